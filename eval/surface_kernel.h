@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+
+namespace limn::eval {
+
+/// What a batch of surface samples is evaluated to. Each adds to what stands before it in the list
+/// of channels below, except that Tangents and Curvature exclude each other.
+enum class Quantity { Position, Normal, Tangents, Curvature, Direction };
+
+/// Channels of a batch, in planes of `stride` floats.
+enum SurfaceChannel {
+    kPositionX, kPositionY, kPositionZ,  ///< all
+    kNormalX, kNormalY, kNormalZ,        ///< Normal and above
+    kMean, kGaussian, kK1, kK2,          ///< Curvature and Direction
+    kDirectionX, kDirectionY, kDirectionZ,  ///< Direction
+    kTangentSX = kMean, kTangentSY, kTangentSZ,  ///< Tangents: dP/ds, dP/dt of the domain
+    kTangentTX, kTangentTY, kTangentTZ
+};
+
+/// Number of channels of a quantity.
+constexpr int GetNumChannels(Quantity quantity) {
+    constexpr int kNum[] = {3, 6, 12, 10, 13};
+    return kNum[static_cast<int>(quantity)];
+}
+
+/// Samples of one polynomial piece, all lanes alike. `x`, `y` and every output plane must be
+/// readable and writable up to the next multiple of kSurfaceLanes.
+inline constexpr int kSurfaceLanes = 16;
+
+struct SurfaceBatch {
+    float const* coefficients;  ///< [3][16] (Loop: [3][15]), see patch_polynomial.h
+    float const* x;             ///< about the piece's centre
+    float const* y;
+    int count;
+    float scale;        ///< d(x)/d(s), for Tangents
+    float orientation;  ///< +1, or -1 to turn the normal round
+    float* out;         ///< planes: out[channel * stride + i]
+    size_t stride;
+    unsigned* degenerate;  ///< one per sample: 1 where float finds no safe tangent plane, see below
+};
+
+/// Evaluates a batch (bake.md, "What is measured at a point").
+///
+/// A sample with |x_s x x_t|^2 < 1e-10 |x_s|^2 |x_t|^2 is flagged; its outputs are finite and to be
+/// replaced. The same bits on every CPU: one source, compiled per instruction set without
+/// contraction or library calls, and chosen once at start.
+void EvaluateSurface(SurfaceBatch const& batch, Quantity quantity, bool isTriangle);
+
+/// One texture-space Newton problem per lane: find (s,t) with uv(s,t) = target.
+struct InversionBatch {
+    double const* coefficients;  ///< [2][16] (Loop: [2][15]) in texels about a local origin
+    double const* targetX;       ///< texels about the same origin
+    double const* targetY;
+    double* x;  ///< in: start, out: solution, about the piece's centre
+    double* y;
+    double* residual;  ///< out: distance in texels at the solution returned
+    int count;         ///< arrays are padded to the next multiple of kInversionLanes
+    double low, high;  ///< iterates are kept in this range of x and y
+    int maxSteps;
+};
+
+inline constexpr int kInversionLanes = 8;
+
+/// Newton's method in double on all lanes until every lane is below `1e-7` texel or maxSteps.
+void InvertTextureMap(InversionBatch const& batch, bool isTriangle);
+
+/// Names and selection of the compiled instruction sets, for tests and `--verbose`: "sse2", "avx2",
+/// "avx512". LIMN_SIMD in the environment chooses one the CPU has.
+char const* GetSurfaceKernelName();
+bool SelectSurfaceKernel(char const* name);
+
+}  // namespace limn::eval

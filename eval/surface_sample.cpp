@@ -1,0 +1,114 @@
+#include "eval/surface_sample.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "eval/patch_polynomial.h"
+
+namespace limn::eval {
+
+namespace {
+
+struct Derivatives {
+    Eigen::Vector3d position, ds, dt, dss, dst, dtt;
+};
+
+std::array<double, 6> EvaluatePolynomial(FaceTree const& tree, PatchPoint const& at, int channel) {
+    double const* const c = at.coefficients + channel * tree.GetNumCoefficients();
+    return tree.GetNumCoefficients() == kQuadCoefficients ? EvaluateQuadPolynomial(c, at.x, at.y)
+                                                          : EvaluateTrianglePolynomial(c, at.x, at.y);
+}
+
+Derivatives Evaluate(FaceTree const& tree, PatchPoint const& at) {
+    Derivatives d;
+    for (int c = 0; c < 3; ++c) {
+        auto const v = EvaluatePolynomial(tree, at, c);
+        double const one = at.scale, two = one * one;
+        d.position[c] = at.origin[c] + v[0];
+        d.ds[c] = v[1] * one;
+        d.dt[c] = v[2] * one;
+        d.dss[c] = v[3] * two;
+        d.dst[c] = v[4] * two;
+        d.dtt[c] = v[5] * two;
+    }
+    return d;
+}
+
+/// Rounding leaves about 1e-15 of each product; below 1e-12 the cross product says nothing.
+bool HasTangentPlane(Derivatives const& d) {
+    double const ss = d.ds.squaredNorm(), tt = d.dt.squaredNorm();
+    return d.ds.cross(d.dt).squaredNorm() > 1e-24 * ss * tt && ss > 0.0 && tt > 0.0;
+}
+
+}  // namespace
+
+Curvature ComputeCurvature(Eigen::Vector3d const& ds, Eigen::Vector3d const& dt,
+                           Eigen::Vector3d const& dss, Eigen::Vector3d const& dst,
+                           Eigen::Vector3d const& dtt, double orientation) {
+    Eigen::Vector3d const n = ds.cross(dt).normalized();
+    double const e = -n.dot(dss), f = -n.dot(dst), g = -n.dot(dtt);
+    double const p = ds.norm();
+    Eigen::Vector3d const a1 = ds / p, a2 = n.cross(a1);
+    double const q = dt.dot(a1), r = dt.dot(a2);
+    double const W11 = orientation * e / (p * p);
+    double const W12 = orientation * (f - e * q / p) / (p * r);
+    double const W22 = orientation * (g - 2.0 * f * q / p + e * q * q / (p * p)) / (r * r);
+
+    Curvature curvature;
+    double const half = 0.5 * (W11 - W22), D = std::sqrt(half * half + W12 * W12);
+    curvature.mean = 0.5 * (W11 + W22);
+    curvature.gaussian = W11 * W22 - W12 * W12;
+    curvature.k1 = curvature.mean + D;
+    curvature.k2 = curvature.mean - D;
+    curvature.direction = a1;
+    if (D > 1e-5 * std::max(std::abs(W11), std::abs(W22))) {
+        // Half of the angle with cosine c and sine s, by its larger part first; no libm.
+        double const c = half / D, s = W12 / D;
+        double const large = std::sqrt(0.5 * (1.0 + std::abs(c))), small = 0.5 * std::abs(s) / large;
+        double const along = c >= 0.0 ? large : small, across = c >= 0.0 ? small : large;
+        curvature.direction = along * a1 + (s < 0.0 ? -across : across) * a2;
+    }
+    return curvature;
+}
+
+SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t, double orientation) {
+    Derivatives const here = Evaluate(tree, tree.Locate(domain, s, t, FaceTree::kLimitDepth));
+    SurfaceSample sample;
+    sample.position = here.position;
+    sample.tangentS = here.ds;
+    sample.tangentT = here.dt;
+
+    Derivatives shape = here;
+    // No tangent plane: towards the domain's centre, first by 2^-10 of the way, then all of it.
+    double const centre = tree.GetCentre();
+    double stepped = 0x1p-10, placeS = s, placeT = t;
+    while (!HasTangentPlane(shape) && stepped <= 1.0) {
+        sample.isDegenerate = true;
+        placeS = s + stepped * (centre - s);
+        placeT = t + stepped * (centre - t);
+        shape = Evaluate(tree, tree.Locate(domain, placeS, placeT, FaceTree::kLimitDepth));
+        stepped *= 32.0;
+    }
+    if (!HasTangentPlane(shape)) {  // the face has collapsed to a line or a point
+        sample.normal = Eigen::Vector3d::UnitZ();
+        sample.curvature.direction = Eigen::Vector3d::UnitX();
+        return sample;
+    }
+    sample.normal = orientation * shape.ds.cross(shape.dt).normalized();
+
+    PatchPoint const apart = tree.Locate(domain, placeS, placeT, FaceTree::kCurvatureDepth);
+    sample.isMoved = apart.isMoved;
+    Derivatives const second = Evaluate(tree, apart);
+    Derivatives const& use = HasTangentPlane(second) ? second : shape;
+    sample.curvature = ComputeCurvature(use.ds, use.dt, use.dss, use.dst, use.dtt, orientation);
+    return sample;
+}
+
+double EvaluateChannel(FaceTree& tree, int domain, double s, double t, int channel) {
+    PatchPoint const at = tree.Locate(domain, s, t, FaceTree::kLimitDepth);
+    return at.origin[channel] + EvaluatePolynomial(tree, at, channel)[0];
+}
+
+}  // namespace limn::eval

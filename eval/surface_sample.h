@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "eval/limit_surface.h"
+
+namespace limn::eval {
+
+/// First and second fundamental forms turned into curvatures, in 1/length (Gaussian: 1/length^2).
+/// A sphere of radius r seen from outside has k1 = k2 = +1/r. Source: bake.md, "What is measured".
+struct Curvature {
+    double mean = 0.0, gaussian = 0.0, k1 = 0.0, k2 = 0.0;
+    Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< of k1; a line, its sign is free
+};
+
+/// Everything known at one place of the limit surface, in double.
+struct SurfaceSample {
+    Eigen::Vector3d position, normal;
+    Eigen::Vector3d tangentS, tangentT;  ///< dP/ds, dP/dt of the domain
+    Curvature curvature;
+    bool isMoved = false;       ///< second derivatives come from 2^-16 off an irregular corner
+    bool isDegenerate = false;  ///< no tangent plane here: normal and curvature from nearby
+};
+
+/// Curvature from derivatives; the unit normal is ds x dt.
+///
+/// \pre ds and dt are not parallel
+Curvature ComputeCurvature(Eigen::Vector3d const& ds, Eigen::Vector3d const& dt,
+                           Eigen::Vector3d const& dss, Eigen::Vector3d const& dst,
+                           Eigen::Vector3d const& dtt, double orientation);
+
+/// Evaluates one place of the tree's current face; its first three channels are the position.
+///
+/// \param orientation  +1, or -1 to turn the normal round
+SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t, double orientation);
+
+/// One channel's value at a place, in double.
+double EvaluateChannel(FaceTree& tree, int domain, double s, double t, int channel);
+
+}  // namespace limn::eval
