@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -173,6 +174,7 @@ int FaceTree::AddNode(RingNode const* ring, size_t numPoints) {
 }
 
 void FaceTree::Bind(Index face) {
+    _face = face;
     _nodes.clear();
     _children.clear();
     _values.assign(1, 0.0);
@@ -273,8 +275,21 @@ PatchPoint FaceTree::GetLeaf(int index) {
     return leaf;
 }
 
-std::span<double const> FaceTree::GetPoints(int node) const {
-    return {&_values[_nodes[node].points], _nodes[node].numPoints * static_cast<size_t>(_length)};
+std::array<double, 2> FaceTree::GetBounds(int index, int channel) const {
+    Node const& node = _nodes[index];
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    auto const add = [&](size_t point) {
+        double const value = _values[node.points + point * static_cast<size_t>(_length) + channel];
+        low = std::min(low, value);
+        high = std::max(high, value);
+    };
+    if (node.ring) {
+        for (Index point : node.ring->Get().support) add(static_cast<size_t>(point));
+    } else {
+        for (size_t point = 0; point < node.numPoints; ++point) add(point);
+    }
+    double const origin = _values[node.origin + static_cast<size_t>(channel)];
+    return {origin + low, origin + high};
 }
 
 double const* FaceTree::GetOrigin(int node) const { return &_values[_nodes[node].origin]; }
@@ -332,7 +347,7 @@ PatchPoint FaceTree::Locate(int domain, double s, double t, int maxDepth) {
         if (_nodes[node].depth > kLimitDepth + 1) break;
         node = GetChild(node, ChildAt(s, t));
     }
-    PatchPoint leaf = IsLeaf(node) ? GetLeaf(node) : MakeLinearLeaf(node);
+    PatchPoint leaf = IsLeaf(node) ? GetLeaf(node) : GetLinearLeaf(node);
     leaf.x = s - _centre;
     leaf.y = t - _centre;
     leaf.isMoved = isMoved;
@@ -341,7 +356,7 @@ PatchPoint FaceTree::Locate(int domain, double s, double t, int maxDepth) {
 
 /// A surface that stays irregular along a whole edge however deep (no OpenSubdiv rule for vertices
 /// makes one, face-varying boundaries do) ends in the linear patch of its corners.
-PatchPoint FaceTree::MakeLinearLeaf(int index) {
+PatchPoint FaceTree::GetLinearLeaf(int index) {
     Node& node = _nodes[index];
     if (node.coefficients == 0) {
         size_t const start = _values.size();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -110,9 +111,11 @@ public:
     bool IsLeaf(int node);
     int GetChild(int node, int child);
     PatchPoint GetLeaf(int node);
-    /// Control points of a node's own face and their number (its corners), relative to the origin.
-    std::span<double const> GetPoints(int node) const;
+    PatchPoint GetLinearLeaf(int node);  ///< of any node: the linear patch of its corners
+    int GetNumDomains() const { return _surface.GetNumDomains(_face); }
     double const* GetOrigin(int node) const;
+    /// Bounds of one channel over the control points that shape a node, which hold its limit.
+    std::array<double, 2> GetBounds(int node, int channel) const;
     far_ext::SubDomain const& GetDomain(int node) const { return _nodes[node].domain; }
 
     int GetLength() const { return _length; }
@@ -134,7 +137,6 @@ private:
     int AddNode(RingNode const* ring, size_t numPoints);
     void Recentre(Node& node, double const* parentOrigin);
     void MakeCoefficients(Node& node);
-    PatchPoint MakeLinearLeaf(int node);
     void MoveOut(double& s, double& t) const;
     int ChildAt(double& s, double& t) const;
     template <class Visit, class VisitNear>
@@ -147,6 +149,7 @@ private:
     int _numCoefficients;
     double _centre;
     bool _isLoop;
+    Index _face = -1;
     far_ext::FaceRingGatherer _gatherer;
     std::vector<Node> _nodes;
     std::vector<int> _children;

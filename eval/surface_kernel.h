@@ -4,23 +4,22 @@
 
 namespace limn::eval {
 
-/// What a batch of surface samples is evaluated to. Each adds to what stands before it in the list
-/// of channels below, except that Tangents and Curvature exclude each other.
-enum class Quantity { Position, Normal, Tangents, Curvature, Direction };
+/// What a batch of surface samples is evaluated to; each includes what stands before it.
+enum class Quantity { Position, Normal, Curvature, Direction, Tangents };
 
 /// Channels of a batch, in planes of `stride` floats.
 enum SurfaceChannel {
-    kPositionX, kPositionY, kPositionZ,  ///< all
-    kNormalX, kNormalY, kNormalZ,        ///< Normal and above
-    kMean, kGaussian, kK1, kK2,          ///< Curvature and Direction
-    kDirectionX, kDirectionY, kDirectionZ,  ///< Direction
-    kTangentSX = kMean, kTangentSY, kTangentSZ,  ///< Tangents: dP/ds, dP/dt of the domain
+    kPositionX, kPositionY, kPositionZ,     ///< all quantities
+    kNormalX, kNormalY, kNormalZ,           ///< Normal
+    kMean, kGaussian, kK1, kK2,             ///< Curvature
+    kDirectionX, kDirectionY, kDirectionZ,  ///< Direction: of k1
+    kTangentSX, kTangentSY, kTangentSZ,     ///< Tangents: dP/ds, dP/dt of the domain
     kTangentTX, kTangentTY, kTangentTZ
 };
 
 /// Number of channels of a quantity.
 constexpr int GetNumChannels(Quantity quantity) {
-    constexpr int kNum[] = {3, 6, 12, 10, 13};
+    constexpr int kNum[] = {3, 6, 10, 13, 19};
     return kNum[static_cast<int>(quantity)];
 }
 
@@ -49,7 +48,7 @@ void EvaluateSurface(SurfaceBatch const& batch, Quantity quantity, bool isTriang
 
 /// One texture-space Newton problem per lane: find (s,t) with uv(s,t) = target.
 struct InversionBatch {
-    double const* coefficients;  ///< [2][16] (Loop: [2][15]) in texels about a local origin
+    double const* coefficients;  ///< [2][16] (Loop: 15 used) in texels about a local origin
     double const* targetX;       ///< texels about the same origin
     double const* targetY;
     double* x;  ///< in: start, out: solution, about the piece's centre

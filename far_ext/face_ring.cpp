@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <compare>
 #include <cstdint>
+
+#include <opensubdiv/far/topologyRefinerFactory.h>
+
+#include "far_ext/error.h"
+#include "far_ext/refiner.h"
 
 namespace limn::far_ext {
 
@@ -13,113 +17,232 @@ size_t FaceRing::Hash() const {
     for (int size : faceSizes) add(static_cast<uint64_t>(size));
     for (Index vertex : faceVertices) add(static_cast<uint64_t>(vertex));
     for (Index value : valueIndices) add(static_cast<uint64_t>(value));
-    for (Index vertex : sharpEdges) add(static_cast<uint64_t>(vertex));
-    for (float sharpness : edgeSharpness) add(std::bit_cast<uint32_t>(sharpness));
-    for (float sharpness : cornerSharpness) add(std::bit_cast<uint32_t>(sharpness));
+    for (Edge const& edge : edges) add(std::bit_cast<uint32_t>(edge.sharpness));
+    for (Corner const& corner : corners) add(std::bit_cast<uint32_t>(corner.sharpness));
     return static_cast<size_t>(hash ^ (hash >> 32));
 }
 
 FaceRingGatherer::FaceRingGatherer(Far::TopologyLevel const& level, int channel)
-    : _level(level),
-      _channel(channel),
-      _localOfVertex(static_cast<size_t>(level.GetNumVertices()), -1),
-      _isInRing(static_cast<size_t>(level.GetNumFaces()), 0) {
-    if (channel >= 0) _localOfValue.assign(static_cast<size_t>(level.GetNumFVarValues(channel)), -1);
+    : _level(level), _channel(channel) {
+    _faces.Resize(level.GetNumFaces());
+    _vertices.Resize(level.GetNumVertices());
+    _edges.Resize(level.GetNumEdges());
+    if (channel >= 0) _values.Resize(level.GetNumFVarValues(channel));
 }
 
-void FaceRingGatherer::GatherFaces(Index face) {
-    _faces.assign(1, face);
-    _isInRing[face] = 1;
+void FaceRingGatherer::NumberFaces(Index face) {
+    _faces.Add(face);
     for (Index vertex : _level.GetFaceVertices(face)) {
         auto const around = _level.GetVertexFaces(vertex);
         int const start = around.FindIndex(face);
-        for (int i = 1; i < around.size(); ++i) {
-            Index const neighbour = around[(start + i) % around.size()];
-            if (!_isInRing[neighbour]) {
-                _isInRing[neighbour] = 1;
-                _faces.push_back(neighbour);
-            }
-        }
-    }
-    for (Index inRing : _faces) _isInRing[inRing] = 0;
-}
-
-/// Numbers vertices (or values) by first appearance and calls visit(level index, local, isNew).
-template <class Visit>
-void FaceRingGatherer::NumberPoints(bool byValue, Visit visit) {
-    auto& local = byValue ? _localOfValue : _localOfVertex;
-    Index count = 0;
-    for (Index face : _faces) {
-        auto const indices =
-            byValue ? _level.GetFaceFVarValues(face, _channel) : _level.GetFaceVertices(face);
-        for (Index index : indices) {
-            bool const isNew = local[index] < 0;
-            if (isNew) local[index] = count++;
-            visit(index, local[index], isNew);
-        }
+        for (int i = 1; i < around.size(); ++i) _faces.Add(around[(start + i) % around.size()]);
     }
 }
 
 void FaceRingGatherer::GatherPoints(Index face, std::vector<Index>& points) {
-    GatherFaces(face);
-    points.clear();
-    bool const byValue = _channel >= 0;
-    NumberPoints(byValue, [&](Index index, Index, bool isNew) {
-        if (isNew) points.push_back(index);
-    });
-    for (Index index : points) (byValue ? _localOfValue : _localOfVertex)[index] = -1;
+    NumberFaces(face);
+    Numbering& numbering = _channel >= 0 ? _values : _vertices;
+    for (Index inRing : _faces.GetMembers()) {
+        auto const corners =
+            _channel >= 0 ? _level.GetFaceFVarValues(inRing, _channel) : _level.GetFaceVertices(inRing);
+        for (Index point : corners) numbering.Add(point);
+    }
+    points = numbering.GetMembers();
+    numbering.Reset();
+    _faces.Reset();
+}
+
+FaceRing::Corner FaceRingGatherer::MakeCorner(Index vertex, Index face) const {
+    FaceRing::Corner corner;
+    corner.sharpness = _level.GetVertexSharpness(vertex);
+    corner.isNonManifold = _level.IsVertexNonManifold(vertex);
+    for (Index around : _level.GetVertexFaces(vertex)) corner.faces.push_back(_faces[around]);
+    for (Index around : _level.GetVertexEdges(vertex)) corner.edges.push_back(_edges[around]);
+    // Round an interior vertex the order may start anywhere; starting at the face makes it unique.
+    if (!corner.isNonManifold && corner.faces.size() == corner.edges.size()) {
+        auto const start = std::find(corner.faces.begin(), corner.faces.end(), _faces[face]);
+        std::rotate(corner.edges.begin(), corner.edges.begin() + (start - corner.faces.begin()),
+                    corner.edges.end());
+        std::rotate(corner.faces.begin(), start, corner.faces.end());
+    }
+    return corner;
 }
 
 void FaceRingGatherer::Gather(Index face, FaceRing& ring, std::vector<Index>& points) {
     ring = FaceRing{};
-    GatherFaces(face);
-    for (Index inRing : _faces) ring.faceSizes.push_back(_level.GetFaceVertices(inRing).size());
-
-    std::vector<Index> vertices;
-    NumberPoints(false, [&](Index vertex, Index local, bool isNew) {
-        ring.faceVertices.push_back(local);
-        if (isNew) vertices.push_back(vertex);
-    });
-    ring.numVertices = ring.numPoints = static_cast<Index>(vertices.size());
-    points = vertices;
-    if (_channel >= 0) {
-        points.clear();
-        NumberPoints(true, [&](Index value, Index local, bool isNew) {
-            ring.valueIndices.push_back(local);
-            if (isNew) points.push_back(value);
-        });
-        ring.numPoints = static_cast<Index>(points.size());
-        for (Index value : points) _localOfValue[value] = -1;
-    }
-
-    GatherSharpness(face, ring);
-    for (Index vertex : vertices) _localOfVertex[vertex] = -1;
-}
-
-void FaceRingGatherer::GatherSharpness(Index face, FaceRing& ring) {
-    struct SharpEdge {
-        Index low, high;
-        float sharpness;
-        auto operator<=>(SharpEdge const&) const = default;
-    };
-    std::vector<SharpEdge> edges;
-    for (Index vertex : _level.GetFaceVertices(face)) {
-        ring.cornerSharpness.push_back(_level.GetVertexSharpness(vertex));
-        for (Index edge : _level.GetVertexEdges(vertex)) {
-            float const sharpness = _level.GetEdgeSharpness(edge);
-            if (sharpness <= 0.0f || _level.IsEdgeBoundary(edge)) continue;
-            auto const ends = _level.GetEdgeVertices(edge);
-            auto const [low, high] = std::minmax({_localOfVertex[ends[0]], _localOfVertex[ends[1]]});
-            edges.push_back({low, high, sharpness});
+    NumberFaces(face);
+    for (Index inRing : _faces.GetMembers()) {
+        auto const vertices = _level.GetFaceVertices(inRing);
+        ring.faceSizes.push_back(vertices.size());
+        for (Index vertex : vertices) ring.faceVertices.push_back(_vertices.Add(vertex));
+        for (Index edge : _level.GetFaceEdges(inRing)) ring.faceEdges.push_back(_edges.Add(edge));
+        if (_channel < 0) continue;
+        for (Index value : _level.GetFaceFVarValues(inRing, _channel)) {
+            ring.valueIndices.push_back(_values.Add(value));
         }
     }
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    for (SharpEdge const& edge : edges) {
-        ring.sharpEdges.push_back(edge.low);
-        ring.sharpEdges.push_back(edge.high);
-        ring.edgeSharpness.push_back(edge.sharpness);
+    ring.numVertices = static_cast<Index>(_vertices.GetMembers().size());
+    points = (_channel >= 0 ? _values : _vertices).GetMembers();
+    ring.numPoints = static_cast<Index>(points.size());
+
+    for (Index edge : _edges.GetMembers()) {
+        auto const ends = _level.GetEdgeVertices(edge);
+        ring.edges.push_back({{_vertices[ends[0]], _vertices[ends[1]]}});
     }
+    for (Index vertex : _level.GetFaceVertices(face)) {
+        ring.corners.push_back(MakeCorner(vertex, face));
+        for (Index edge : _level.GetVertexEdges(vertex)) {
+            FaceRing::Edge& local = ring.edges[_edges[edge]];
+            local.sharpness = _level.GetEdgeSharpness(edge);
+            local.isNonManifold = _level.IsEdgeNonManifold(edge);
+        }
+    }
+    _faces.Reset();
+    _vertices.Reset();
+    _edges.Reset();
+    _values.Reset();
+}
+
+namespace {
+
+/// A ring with the relations OpenSubdiv wants, per edge and per vertex.
+struct RingTopology {
+    FaceRing const& ring;
+    std::vector<std::vector<Index>> edgeFaces, vertexFaces, vertexEdges;
+    std::vector<char> isNonManifold;  // per vertex
+
+    explicit RingTopology(FaceRing const& r) : ring(r) {
+        edgeFaces.resize(ring.edges.size());
+        vertexFaces.resize(static_cast<size_t>(ring.numVertices));
+        vertexEdges.resize(vertexFaces.size());
+        // The faces round a vertex of the rim are not all here; its rules are of no consequence.
+        isNonManifold.assign(vertexFaces.size(), 1);
+        size_t corner = 0;
+        for (Index face = 0; face < static_cast<Index>(ring.faceSizes.size()); ++face) {
+            for (int i = 0; i < ring.faceSizes[face]; ++i, ++corner) {
+                edgeFaces[ring.faceEdges[corner]].push_back(face);
+                vertexFaces[ring.faceVertices[corner]].push_back(face);
+            }
+        }
+        for (Index edge = 0; edge < static_cast<Index>(ring.edges.size()); ++edge) {
+            auto const& [a, b] = ring.edges[edge].vertices;
+            vertexEdges[a].push_back(edge);
+            vertexEdges[b].push_back(edge);
+        }
+        for (size_t i = 0; i < ring.corners.size(); ++i) {
+            Index const vertex = ring.faceVertices[i];
+            vertexFaces[vertex] = ring.corners[i].faces;
+            vertexEdges[vertex] = ring.corners[i].edges;
+            isNonManifold[vertex] = ring.corners[i].isNonManifold;
+        }
+    }
+};
+
+}  // namespace
+}  // namespace limn::far_ext
+
+namespace OpenSubdiv {
+namespace OPENSUBDIV_VERSION {
+namespace Far {
+
+using limn::far_ext::RingTopology;
+
+template <>
+bool TopologyRefinerFactory<RingTopology>::resizeComponentTopology(TopologyRefiner& refiner,
+                                                                   RingTopology const& topology) {
+    auto const& ring = topology.ring;
+    setNumBaseFaces(refiner, static_cast<int>(ring.faceSizes.size()));
+    setNumBaseEdges(refiner, static_cast<int>(ring.edges.size()));
+    setNumBaseVertices(refiner, ring.numVertices);
+    for (size_t face = 0; face < ring.faceSizes.size(); ++face) {
+        setNumBaseFaceVertices(refiner, static_cast<Index>(face), ring.faceSizes[face]);
+    }
+    for (size_t edge = 0; edge < ring.edges.size(); ++edge) {
+        setNumBaseEdgeFaces(refiner, static_cast<Index>(edge),
+                            static_cast<int>(topology.edgeFaces[edge].size()));
+    }
+    for (Index vertex = 0; vertex < ring.numVertices; ++vertex) {
+        setNumBaseVertexFaces(refiner, vertex, static_cast<int>(topology.vertexFaces[vertex].size()));
+        setNumBaseVertexEdges(refiner, vertex, static_cast<int>(topology.vertexEdges[vertex].size()));
+    }
+    return true;
+}
+
+template <>
+bool TopologyRefinerFactory<RingTopology>::assignComponentTopology(TopologyRefiner& refiner,
+                                                                   RingTopology const& topology) {
+    auto const& ring = topology.ring;
+    auto const copy = [](auto const& from, IndexArray to) { std::copy(from.begin(), from.end(), to.begin()); };
+    auto vertex = ring.faceVertices.begin();
+    auto edge = ring.faceEdges.begin();
+    for (Index face = 0; face < static_cast<Index>(ring.faceSizes.size()); ++face) {
+        int const size = ring.faceSizes[face];
+        std::copy_n(vertex, size, getBaseFaceVertices(refiner, face).begin());
+        std::copy_n(edge, size, getBaseFaceEdges(refiner, face).begin());
+        vertex += size;
+        edge += size;
+    }
+    for (Index e = 0; e < static_cast<Index>(ring.edges.size()); ++e) {
+        std::copy_n(ring.edges[e].vertices, 2, getBaseEdgeVertices(refiner, e).begin());
+        copy(topology.edgeFaces[e], getBaseEdgeFaces(refiner, e));
+    }
+    for (Index v = 0; v < ring.numVertices; ++v) {
+        copy(topology.vertexFaces[v], getBaseVertexFaces(refiner, v));
+        copy(topology.vertexEdges[v], getBaseVertexEdges(refiner, v));
+    }
+    populateBaseLocalIndices(refiner);
+    for (Index e = 0; e < static_cast<Index>(ring.edges.size()); ++e) {
+        if (ring.edges[e].isNonManifold) setBaseEdgeNonManifold(refiner, e, true);
+    }
+    for (Index v = 0; v < ring.numVertices; ++v) {
+        if (topology.isNonManifold[v]) setBaseVertexNonManifold(refiner, v, true);
+    }
+    return true;
+}
+
+template <>
+bool TopologyRefinerFactory<RingTopology>::assignComponentTags(TopologyRefiner& refiner,
+                                                               RingTopology const& topology) {
+    auto const& ring = topology.ring;
+    for (size_t edge = 0; edge < ring.edges.size(); ++edge) {
+        setBaseEdgeSharpness(refiner, static_cast<Index>(edge), ring.edges[edge].sharpness);
+    }
+    for (size_t i = 0; i < ring.corners.size(); ++i) {
+        setBaseVertexSharpness(refiner, ring.faceVertices[i], ring.corners[i].sharpness);
+    }
+    return true;
+}
+
+template <>
+bool TopologyRefinerFactory<RingTopology>::assignFaceVaryingTopology(TopologyRefiner& refiner,
+                                                                     RingTopology const& topology) {
+    auto const& ring = topology.ring;
+    if (!ring.IsFaceVarying()) return true;
+    int const channel = createBaseFVarChannel(refiner, ring.numPoints);
+    auto value = ring.valueIndices.begin();
+    for (Index face = 0; face < static_cast<Index>(ring.faceSizes.size()); ++face) {
+        std::copy_n(value, ring.faceSizes[face], getBaseFaceFVarValues(refiner, face, channel).begin());
+        value += ring.faceSizes[face];
+    }
+    return true;
+}
+
+}  // namespace Far
+}  // namespace OPENSUBDIV_VERSION
+}  // namespace OpenSubdiv
+
+namespace limn::far_ext {
+
+std::unique_ptr<Far::TopologyRefiner> CreateRingRefiner(FaceRing const& ring, Sdc::SchemeType scheme,
+                                                        Sdc::Options options) {
+    using Factory = Far::TopologyRefinerFactory<RingTopology>;
+    options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    FarReportGuard guard;
+    std::unique_ptr<Far::TopologyRefiner> refiner(
+        Factory::Create(RingTopology(ring), Factory::Options(scheme, options)));
+    guard.ThrowIfReported("building the topology round a face");
+    if (!refiner) throw Error(ErrorCode::BadMesh, "OpenSubdiv refused the topology round a face");
+    return refiner;
 }
 
 }  // namespace limn::far_ext

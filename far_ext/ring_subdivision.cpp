@@ -6,8 +6,6 @@
 
 #include <opensubdiv/far/primvarRefiner.h>
 
-#include "far_ext/error.h"
-#include "far_ext/refiner.h"
 
 namespace limn::far_ext {
 
@@ -17,26 +15,7 @@ using Level = Far::TopologyLevel;
 
 std::unique_ptr<Far::TopologyRefiner> RefineOnce(FaceRing const& ring, Sdc::SchemeType scheme,
                                                  Sdc::Options options) {
-    ControlMesh mesh;
-    mesh.numVertices = ring.numVertices;
-    mesh.faceSizes = ring.faceSizes;
-    mesh.faceVertices = ring.faceVertices;
-    mesh.creaseVertexPairs = ring.sharpEdges;
-    mesh.creaseSharpness = ring.edgeSharpness;
-    int const size = ring.faceSizes[0];
-    for (int corner = 0; corner < size; ++corner) {
-        if (ring.cornerSharpness[corner] > 0.0f) {
-            mesh.cornerVertices.push_back(ring.faceVertices[corner]);
-            mesh.cornerSharpness.push_back(ring.cornerSharpness[corner]);
-        }
-    }
-    if (ring.IsFaceVarying()) mesh.fvarChannels.push_back({ring.numPoints, ring.valueIndices});
-    mesh.scheme = scheme;
-    mesh.options = options;
-    // The effective sharpness of corners is part of the ring; the ring's own rim must add none.
-    mesh.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-
-    auto refiner = CreateRefiner(mesh);
+    auto refiner = CreateRingRefiner(ring, scheme, options);
     Far::TopologyRefiner::UniformOptions uniform(1);
     uniform.fullTopologyInLastLevel = true;
     refiner->RefineUniform(uniform);
@@ -100,11 +79,12 @@ public:
         bool const isLoop = _refiner.GetSchemeType() == Sdc::SCHEME_LOOP;
         if (_size != (isLoop ? 3 : 4)) return {};
         if (IsLinear()) return isLoop ? LinearTriangle() : LinearQuad();
-        for (float s : _ring.edgeSharpness) {
-            if (s < kInfiniteSharpness) return {};
-        }
-        for (float s : _ring.cornerSharpness) {
-            if (s > 0.0f && s < kInfiniteSharpness) return {};
+        auto const isSemiSharp = [](auto const& part) {
+            return part.sharpness > 0.0f && part.sharpness < kInfiniteSharpness;
+        };
+        if (std::any_of(_ring.edges.begin(), _ring.edges.end(), isSemiSharp) ||
+            std::any_of(_ring.corners.begin(), _ring.corners.end(), isSemiSharp)) {
+            return {};
         }
         return isLoop ? FindBoxSpline() : FindBSpline();
     }
@@ -131,24 +111,17 @@ private:
         return points[_firstCorner[face] + corner % _ring.faceSizes[face]];
     }
 
-    bool IsInfinitelySharp(Index a, Index b) const {
-        for (size_t i = 0; i < _ring.edgeSharpness.size(); ++i) {
-            Index const low = _ring.sharpEdges[2 * i], high = _ring.sharpEdges[2 * i + 1];
-            if ((low == a && high == b) || (low == b && high == a)) return true;
-        }
-        return false;
-    }
-
     /// The one face on the other side of an edge, if the surface goes on smoothly across it.
     FaceEdge Across(int face, int edge) const {
-        if (IsInfinitelySharp(Vertex(face, edge), Vertex(face, edge + 1))) return {};
+        Index const shared = _ring.faceEdges[_firstCorner[face] + edge % _ring.faceSizes[face]];
+        if (_ring.edges[shared].sharpness > 0.0f) return {};
         Index const from = Point(face, edge), to = Point(face, edge + 1);
         FaceEdge found;
         for (int other = 0; other < static_cast<int>(_ring.faceSizes.size()); ++other) {
             if (other == face) continue;
             for (int i = 0; i < _ring.faceSizes[other]; ++i) {
-                if (Point(other, i) != to || Point(other, i + 1) != from) continue;
-                if (found.Exists()) return {};
+                if (_ring.faceEdges[_firstCorner[other] + i] != shared) continue;
+                if (found.Exists() || Point(other, i) != to || Point(other, i + 1) != from) return {};
                 found = {other, i};
             }
         }
@@ -269,7 +242,7 @@ private:
             int const previous = (i + 3) % 4;
             switch (GetCornerType(i, 4, 9.0 / 16.0)) {
                 case CornerType::Smooth: {
-                    if (isSharp[i] || isSharp[previous] || TouchesSharpEdge(Vertex(0, i))) return {};
+                    if (isSharp[i] || isSharp[previous] || TouchesSharpEdge(i)) return {};
                     // Over the edge behind corner i, then over that face's edge at the corner.
                     FaceEdge const diagonal = Across(across[i].face, across[i].edge + 1);
                     if (!diagonal.Exists() || _ring.faceSizes[diagonal.face] != 4) return {};
@@ -297,9 +270,10 @@ private:
         return ToRows(grid);
     }
 
-    bool TouchesSharpEdge(Index vertex) const {
-        return std::find(_ring.sharpEdges.begin(), _ring.sharpEdges.end(), vertex) !=
-               _ring.sharpEdges.end();
+    bool TouchesSharpEdge(int corner) const {
+        auto const& edges = _ring.corners[corner].edges;
+        return std::any_of(edges.begin(), edges.end(),
+                           [&](Index edge) { return _ring.edges[edge].sharpness > 0.0f; });
     }
 
     // -------- triangles
@@ -356,7 +330,7 @@ private:
             ++numFaces;
             if (++last < 6) hexagon[last] = One(Point(at.face, at.edge + 2));
         }
-        if (type == CornerType::Smooth) return last == 6 && !TouchesSharpEdge(Vertex(0, corner));
+        if (type == CornerType::Smooth) return last == 6 && !TouchesSharpEdge(corner);
         if (type != CornerType::Crease) return false;
         int first = 6;
         for (FaceEdge at = Across(0, corner); at.Exists() && at.face != 0 && numFaces < 7;
@@ -406,6 +380,25 @@ SubDomain GetChildDomain(Level const& coarse, Level const& fine, Index childFace
     return {origin, next[0] - origin[0]};
 }
 
+/// Points of the faces that share a point, not only a vertex, with the face.
+std::vector<Index> FindSupport(FaceRing const& ring) {
+    auto const& points = ring.IsFaceVarying() ? ring.valueIndices : ring.faceVertices;
+    std::vector<char> isOwn(static_cast<size_t>(ring.numPoints), 0), isSupport(isOwn);
+    for (int i = 0; i < ring.faceSizes[0]; ++i) isOwn[points[i]] = 1;
+    auto first = points.begin();
+    for (int size : ring.faceSizes) {
+        if (std::any_of(first, first + size, [&](Index point) { return isOwn[point]; })) {
+            std::for_each(first, first + size, [&](Index point) { isSupport[point] = 1; });
+        }
+        first += size;
+    }
+    std::vector<Index> support;
+    for (Index point = 0; point < ring.numPoints; ++point) {
+        if (isSupport[point]) support.push_back(point);
+    }
+    return support;
+}
+
 }  // namespace
 
 RingSubdivision RingSubdivision::Build(FaceRing const& ring, Sdc::SchemeType scheme,
@@ -413,6 +406,7 @@ RingSubdivision RingSubdivision::Build(FaceRing const& ring, Sdc::SchemeType sch
     auto const refiner = RefineOnce(ring, scheme, options);
     auto const fineRows = RefineIdentity(ring, *refiner);
     RingSubdivision result;
+    result.support = FindSupport(ring);
     result.patch = PatchFinder(ring, *refiner, fineRows).Find();
     if (result.IsRegular()) return result;
 

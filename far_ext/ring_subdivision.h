@@ -37,6 +37,10 @@ struct RingSubdivision {
     SparseRows patch;
     std::vector<Child> children;  ///< per corner; Loop has the middle child last. Empty if regular
 
+    /// The points that shape the face's surface, which lies in their convex hull. With face-varying
+    /// topology the ring also has values of other charts, which do not.
+    std::vector<Index> support;
+
     bool IsRegular() const { return patch.GetNumRows() != 0; }
 
     static RingSubdivision Build(FaceRing const& ring, Sdc::SchemeType scheme, Sdc::Options options);

@@ -1,22 +1,42 @@
 #include "engine/io/mesh_reader.h"
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 
 #include <fmt/format.h>
 
 #include "engine/io/file.h"
 #include "engine/io/obj_reader.h"
+#include "engine/io/off_reader.h"
+#include "engine/io/ply_reader.h"
 #include "far_ext/error.h"
 
 namespace limn::engine {
 
+namespace {
+
+std::string GetEnding(std::string const& path) {
+    std::string ending = std::filesystem::path(path).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return ending;
+}
+
+}  // namespace
+
 Scene ReadMesh(std::string const& path) {
     InputFile const file(path);
+    std::string_view const bytes = file.GetBytes();
     Scene scene;
     scene.path = path;
     scene.name = std::filesystem::path(path).stem().string();
-    scene.sha256 = Sha256(file.GetBytes());
-    ReadObj(file.GetBytes(), scene);
+    scene.sha256 = Sha256(bytes);
+    if (bytes.empty()) throw Error(ErrorCode::BadMesh, fmt::format("{}: the file is empty", path));
+    std::string const ending = GetEnding(path);
+    if (ending == ".ply" || (ending != ".obj" && bytes.starts_with("ply"))) ReadPly(bytes, scene);
+    else if (ending == ".off" || (ending != ".obj" && bytes.starts_with("OFF"))) ReadOff(bytes, scene);
+    else ReadObj(bytes, scene);
     return scene;
 }
 

@@ -73,6 +73,12 @@ public:
         throw Error(ErrorCode::BadMesh, fmt::format("{}:{}: {}", _path, _lineNumber, message));
     }
 
+    /// Cuts the line at a '#'.
+    void DropComment() { _line = _line.substr(0, _line.find('#')); }
+
+    /// The text after the current line.
+    std::string_view GetRest() const { return _rest; }
+
     uint32_t GetLineNumber() const { return _lineNumber; }
     bool EndsWithNewline() const { return _endsWithNewline; }
     std::string const& GetPath() const { return _path; }

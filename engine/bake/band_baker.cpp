@@ -1,0 +1,334 @@
+#include "engine/bake/band_baker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "far_ext/error.h"
+#include "far_ext/refiner.h"
+
+namespace limn::engine {
+
+/// What one thread needs, made once.
+struct BandBaker::Worker {
+    eval::FaceTree tree;
+    eval::SurfaceSampler sampler;
+    UVRaster raster;
+    std::vector<float> block;  // map values of a block of samples
+    std::vector<std::array<double, 4>> jacobians;
+    std::vector<float> samplePlanes, lineSums;
+    TexelBand sampleTexels;
+
+    explicit Worker(BandBaker const& baker)
+        : tree(*baker._surface, baker._values),
+          sampler(tree, baker._quantity, baker._options.isLeftHanded ? -1.0f : 1.0f),
+          raster(*baker._uvSurface, baker._scene.uvs) {}
+};
+
+BandBaker::~BandBaker() = default;
+
+BandBaker::Worker& BandBaker::LocalWorker() {
+    auto& worker = _workers.local();
+    if (!worker) worker = std::make_unique<Worker>(*this);
+    return *worker;
+}
+
+BandBaker::BandBaker(Scene const& scene, Far::TopologyRefiner const& refiner, Scene const* other,
+                     BakeOptions const& options, std::vector<Map> const& maps)
+    : _scene(scene),
+      _refiner(refiner),
+      _options(options),
+      _maps(maps),
+      _quantity(FindQuantity(maps)),
+      _hasTexels(scene.cage.faceSizes.size()) {
+    if (!scene.HasUVs()) {
+        throw Error(ErrorCode::BadMesh,
+                    fmt::format("{}: the mesh has no texture coordinates; a bake needs them ('vt' in OBJ, s,t in PLY)",
+                                scene.path));
+    }
+    if (other && (other->cage.faceVertices != scene.cage.faceVertices ||
+                  other->cage.faceSizes != scene.cage.faceSizes)) {
+        throw Error(ErrorCode::BadMesh,
+                    fmt::format("{}: its faces differ from those of '{}'; --against needs the same faces and "
+                                "vertices in the same order",
+                                other->path, scene.path));
+    }
+    for (Map const& map : maps) {
+        _numPlanes += map.GetNumChannels();
+        _needsJacobian |= NeedsJacobian(map, options.maps);
+    }
+    _surface = std::make_unique<eval::LimitSurface>(_refiner);
+    _uvSurface = std::make_unique<eval::LimitSurface>(_refiner, 0);
+
+    _isBaked.assign(scene.cage.faceSizes.size(), 1);
+    if (!options.groups.empty()) _isBaked = SelectGroups(scene, options.groups);
+    for (Index face = 0; face < GetNumFaces(); ++face) {
+        if (!_surface->HasLimit(face)) _isBaked[face] = 0;
+    }
+
+    // The tree's channels: positions, then primvars, then the other mesh's positions.
+    _values.push_back({scene.positions, 3});
+    for (Primvar const& primvar : scene.primvars) {
+        _primvarValues.insert(_primvarValues.end(), primvar.values.begin(), primvar.values.end());
+    }
+    size_t first = 0;
+    for (Primvar const& primvar : scene.primvars) {
+        _values.push_back({std::span(_primvarValues).subspan(first, primvar.values.size()), primvar.numChannels});
+        first += primvar.values.size();
+    }
+    if (other) _values.push_back({other->positions, 3});
+
+    _bounds.resize(_isBaked.size());
+    tbb::parallel_for(tbb::blocked_range<Index>(0, GetNumFaces(), 512), [&](auto const& range) {
+        CheckInterrupted();
+        UVRaster& raster = LocalWorker().raster;
+        for (Index face = range.begin(); face != range.end(); ++face) {
+            if (_isBaked[face]) _bounds[face] = raster.GetBounds(face);
+        }
+    });
+    bool const hasStretch =
+        std::any_of(maps.begin(), maps.end(), [](Map const& map) { return map.kind == MapKind::Stretch; });
+    if (hasStretch) _meanArea = FindMeanArea();
+}
+
+/// Surface area over texture area, both by the 3 x 3 point Gauss rule on every domain.
+double BandBaker::FindMeanArea() {
+    constexpr double kNodes[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
+    constexpr double kWeights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+    struct Areas {
+        double surface = 0.0, texture = 0.0;
+    };
+    std::vector<Areas> areas(_isBaked.size());
+    tbb::parallel_for(tbb::blocked_range<Index>(0, GetNumFaces(), 64), [&](auto const& range) {
+        CheckInterrupted();
+        Worker& worker = LocalWorker();
+        for (Index face = range.begin(); face != range.end(); ++face) {
+            if (!_isBaked[face]) continue;
+            worker.tree.Bind(face);
+            worker.raster.Bind(face);
+            for (int domain = 0; domain < _surface->GetNumDomains(face); ++domain) {
+                for (int j = 0; j < 3; ++j) {
+                    for (int i = 0; i < 3; ++i) {
+                        // A triangle is the square with one side collapsed.
+                        double const s = _surface->IsLoop() ? kNodes[i] * (1.0 - kNodes[j]) : kNodes[i];
+                        double const t = kNodes[j];
+                        double const weight =
+                            kWeights[i] * kWeights[j] * (_surface->IsLoop() ? 1.0 - kNodes[j] : 1.0);
+                        auto const sample = eval::EvaluateSample(worker.tree, domain, s, t, 1.0);
+                        auto const [us, ut, vs, vt] = worker.raster.GetJacobian(domain, s, t);
+                        areas[face].surface += weight * sample.tangentS.cross(sample.tangentT).norm();
+                        areas[face].texture += weight * std::abs(us * vt - ut * vs);
+                    }
+                }
+            }
+        }
+    });
+    Areas total;
+    for (Areas const& face : areas) {  // in order: the same sum for any number of threads
+        total.surface += face.surface;
+        total.texture += face.texture;
+    }
+    return total.texture > 0.0 && total.surface > 0.0 ? total.surface / total.texture : 1.0;
+}
+
+bool BandBaker::LeavesUdimRange(Index face) {
+    constexpr double kSlack = 1e-4;
+    UVBounds const& b = _bounds[face];
+    if (b.minU >= -kSlack && b.maxU <= 10.0 + kSlack && b.minV >= -kSlack) return false;
+    // The bounds are loose; look at the surface itself.
+    UVRaster& raster = LocalWorker().raster;
+    raster.Bind(face);
+    constexpr int kSteps = 4;
+    for (int domain = 0; domain < _uvSurface->GetNumDomains(face); ++domain) {
+        for (int j = 0; j <= kSteps; ++j) {
+            for (int i = 0; i <= kSteps - (_uvSurface->IsLoop() ? j : 0); ++i) {
+                auto const [u, v] = raster.Evaluate(domain, static_cast<double>(i) / kSteps, static_cast<double>(j) / kSteps);
+                if (u < -kSlack || u > 10.0 + kSlack || v < -kSlack) return true;
+            }
+        }
+    }
+    return false;
+}
+
+std::unique_ptr<Band> BandBaker::MakeBand(int index, TileGrid grid, std::vector<Index> const& faces) {
+    CheckInterrupted();
+    Worker& worker = LocalWorker();
+    auto band = std::make_unique<Band>();
+    band->index = index;
+    int const firstRow = index * Band::kRows, numRows = std::min(Band::kRows, grid.height - firstRow);
+    size_t const numTexels = static_cast<size_t>(numRows) * grid.width;
+    band->planes.assign(numTexels * _numPlanes, 0.0f);
+    band->texels.Reset(firstRow, numRows, grid.width);
+    band->isCovered.resize(numTexels);
+    if (_options.samplesPerSide == 1) {
+        RasterSamples(worker, grid, faces, band->texels, band->planes.data());
+        for (size_t i = 0; i < numTexels; ++i) band->isCovered[i] = band->texels.owner[i] >= 0;
+    } else {
+        Supersample(worker, grid, faces, *band);
+    }
+    size_t covered = 0, overlaps = 0, failures = 0;
+    for (size_t i = 0; i < numTexels; ++i) {
+        covered += band->isCovered[i];
+        overlaps += band->texels.overlap[i];
+        failures += band->texels.failed[i] && !band->isCovered[i];
+    }
+    _texelsCovered += covered;
+    _overlaps += overlaps;
+    _newtonFailures += failures;
+    return band;
+}
+
+void BandBaker::RasterSamples(Worker& worker, TileGrid const& grid, std::vector<Index> const& faces, TexelBand& texels,
+                              float* planes) {
+    size_t const planeSize = texels.owner.size();
+    size_t untilCheck = 0;
+    for (Index face : faces) {
+        if (untilCheck-- == 0) {
+            CheckInterrupted();
+            untilCheck = 256;
+        }
+        auto const& hits = worker.raster.Rasterise(face, grid, texels);
+        bool isBound = false;
+        for (int domain = 0; domain < _surface->GetNumDomains(face); ++domain) {
+            if (hits[domain].texel.empty()) continue;
+            if (!isBound) worker.sampler.Bind(face);
+            isBound = true;
+            EvaluateHits(worker, face, domain, hits[domain], planes, planeSize);
+        }
+    }
+}
+
+void BandBaker::EvaluateHits(Worker& worker, Index face, int domain, TexelHits const& hits, float* planes,
+                             size_t planeSize) {
+    _hasTexels[face].store(true, std::memory_order_relaxed);
+    worker.sampler.Evaluate(domain, hits.s, hits.t, [&](std::span<int const> samples, float const* values, size_t stride) {
+        worker.jacobians.clear();
+        if (_needsJacobian) {
+            for (int sample : samples) {
+                worker.jacobians.push_back(worker.raster.GetJacobian(domain, hits.s[sample], hits.t[sample]));
+            }
+        }
+        float* plane = planes;
+        for (Map const& map : _maps) {
+            size_t const numChannels = static_cast<size_t>(map.GetNumChannels());
+            worker.block.resize(numChannels * stride);
+            EvaluateMap(map, _options.maps, _quantity, values, stride, samples.size(), worker.jacobians, _meanArea,
+                        worker.block.data(), stride);
+            for (size_t c = 0; c < numChannels; ++c, plane += planeSize) {
+                float const* const from = &worker.block[c * stride];
+                for (size_t i = 0; i < samples.size(); ++i) plane[hits.texel[samples[i]]] = from[i];
+            }
+        }
+    });
+}
+
+/// Averages N x N ordered samples per texel over those that are covered.
+void BandBaker::Supersample(Worker& worker, TileGrid const& grid, std::vector<Index> const& faces, Band& band) {
+    int const n = _options.samplesPerSide;
+    size_t const numTexels = band.GetNumTexels();
+    std::vector<int> numHits(numTexels, 0);
+    size_t numLines = 0;
+    for (Map const& map : _maps) numLines += map.averaging == Averaging::Line;
+    worker.lineSums.assign(numLines * 6 * numTexels, 0.0f);
+    auto& sample = worker.samplePlanes;
+    for (int j = 0; j < n; ++j) {
+        for (int i = 0; i < n; ++i) {
+            TileGrid offset = grid;
+            offset.offsetX = (i + 0.5) / n;
+            offset.offsetY = (j + 0.5) / n;
+            worker.sampleTexels.Reset(band.texels.firstRow, band.texels.numRows, band.texels.width);
+            sample.assign(band.planes.size(), 0.0f);
+            RasterSamples(worker, offset, faces, worker.sampleTexels, sample.data());
+            size_t plane = 0, line = 0;
+            for (Map const& map : _maps) {
+                size_t const numChannels = static_cast<size_t>(map.GetNumChannels());
+                if (map.averaging == Averaging::Line) {
+                    float* sum = &worker.lineSums[line++ * 6 * numTexels];
+                    for (size_t a = 0; a < 3; ++a) {
+                        for (size_t b = a; b < 3; ++b, sum += numTexels) {
+                            float const* const da = &sample[(plane + a) * numTexels];
+                            float const* const db = &sample[(plane + b) * numTexels];
+                            for (size_t k = 0; k < numTexels; ++k) sum[k] += da[k] * db[k];
+                        }
+                    }
+                } else {
+                    for (size_t k = plane * numTexels; k < (plane + numChannels) * numTexels; ++k) {
+                        band.planes[k] += sample[k];
+                    }
+                }
+                plane += numChannels;
+            }
+            for (size_t k = 0; k < numTexels; ++k) {
+                numHits[k] += worker.sampleTexels.owner[k] >= 0;
+                band.texels.overlap[k] |= worker.sampleTexels.overlap[k];
+                band.texels.failed[k] |= worker.sampleTexels.failed[k];
+            }
+        }
+    }
+    band.coverage.resize(numTexels);
+    for (size_t k = 0; k < numTexels; ++k) {
+        band.isCovered[k] = numHits[k] > 0;
+        band.coverage[k] = static_cast<float>(numHits[k]) / static_cast<float>(n * n);
+        if (numHits[k] == 0) continue;
+        size_t plane = 0, line = 0;
+        for (Map const& map : _maps) {
+            size_t const numChannels = static_cast<size_t>(map.GetNumChannels());
+            float* const values = &band.planes[plane * numTexels + k];
+            if (map.averaging == Averaging::Line) {
+                std::array<double, 6> sum;
+                for (size_t c = 0; c < 6; ++c) sum[c] = worker.lineSums[(line * 6 + c) * numTexels + k];
+                auto const direction = FindMainLine(sum);
+                for (size_t c = 0; c < 3; ++c) values[c * numTexels] = direction[c];
+                ++line;
+            } else {
+                float divisor = static_cast<float>(numHits[k]);
+                if (map.averaging == Averaging::UnitVector) {
+                    float squares = 0.0f;
+                    for (size_t c = 0; c < numChannels; ++c) squares += values[c * numTexels] * values[c * numTexels];
+                    if (squares > 0.0f) divisor = std::sqrt(squares);
+                }
+                for (size_t c = 0; c < numChannels; ++c) values[c * numTexels] /= divisor;
+            }
+            plane += numChannels;
+        }
+    }
+}
+
+std::string BandBaker::NamePlace(eval::SurfaceSampler::Place const& place) const {
+    auto const level = _refiner.GetLevel(0);
+    auto const vertices = level.GetFaceVertices(place.face);
+    int corner;
+    if (_surface->GetNumDomains(place.face) > 1) {
+        if (place.s + place.t > 1.0) return fmt::format("the centre of {}", _scene.NameFace(place.face));
+        corner = place.domain;
+    } else if (_surface->IsLoop()) {
+        corner = place.s > 0.5 ? 1 : place.t > 0.5 ? 2 : 0;
+    } else {
+        bool const farS = place.s > 0.5, farT = place.t > 0.5;
+        corner = farT ? (farS ? 2 : 3) : (farS ? 1 : 0);
+    }
+    return fmt::format("vertex {}", vertices[corner]);
+}
+
+void BandBaker::AddCounts(BakeReport& report, std::vector<std::string>& movedPlaces) const {
+    report.texelsCovered = _texelsCovered;
+    report.overlaps = _overlaps;
+    report.newtonFailures = _newtonFailures;
+    std::set<std::string> places;
+    for (auto const& worker : _workers) {
+        auto const& counts = worker->sampler.GetCounts();
+        report.movedSamples += counts.moved;
+        report.degenerateSamples += counts.degenerate;
+        for (auto const& place : counts.movedPlaces) places.insert(NamePlace(place));
+    }
+    movedPlaces.assign(places.begin(), places.end());
+    for (Index face = 0; face < GetNumFaces(); ++face) {
+        if (_isBaked[face] && !_hasTexels[face]) report.facesWithoutTexels.push_back(face);
+    }
+}
+
+}  // namespace limn::engine

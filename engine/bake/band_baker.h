@@ -1,0 +1,88 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include "engine/bake/bake.h"
+#include "engine/bake/layout.h"
+#include "engine/bake/uv_raster.h"
+#include "eval/surface_sampler.h"
+
+namespace limn::engine {
+
+/// A run of texel rows of one tile after evaluation, before padding.
+struct Band {
+    static constexpr int kRows = ExrSpec::kTileSize;
+
+    int index = 0;                   ///< rows [kRows * index, ...)
+    TexelBand texels;
+    std::vector<float> planes;       ///< [plane][row][column]; 0 where nothing is covered
+    std::vector<uint8_t> isCovered;  ///< [row][column]
+    std::vector<float> coverage;     ///< [row][column], 0 to 1; empty without supersampling
+
+    size_t GetNumTexels() const { return isCovered.size(); }
+    float GetCoverage(size_t texel) const {
+        return coverage.empty() ? static_cast<float>(isCovered[texel]) : coverage[texel];
+    }
+};
+
+/// From mesh to bands of texels: finds which face covers which texel, evaluates the surface there and
+/// computes the maps. Everything that is built once per bake lives here.
+///
+/// Threads  MakeBand may run on many threads; the same bands come out.
+class BandBaker {
+public:
+    /// \throws Error  BadMesh: no UVs; --against with other faces
+    BandBaker(Scene const& scene, Far::TopologyRefiner const& refiner, Scene const* other,
+              BakeOptions const& options, std::vector<Map> const& maps);
+
+    ~BandBaker();
+
+    /// Bounds of a face's texture coordinates; meaningless where !IsBaked.
+    UVBounds const& GetBounds(Index face) const { return _bounds[face]; }
+    bool IsBaked(Index face) const { return _isBaked[face]; }
+    Index GetNumFaces() const { return _surface->GetNumFaces(); }
+
+    /// True if some place of the face lies outside u in [0, 10], v >= 0 by more than rounding.
+    bool LeavesUdimRange(Index face);
+
+    /// \param grid   of the tile, without sample offsets
+    /// \param faces  all that may cover a texel of the band, ascending
+    std::unique_ptr<Band> MakeBand(int index, TileGrid grid, std::vector<Index> const& faces);
+
+    /// Adds what was counted so far, and names the vertices samples were moved away from.
+    void AddCounts(BakeReport& report, std::vector<std::string>& movedPlaces) const;
+
+private:
+    struct Worker;
+
+    Worker& LocalWorker();
+    void RasterSamples(Worker& worker, TileGrid const& grid, std::vector<Index> const& faces, TexelBand& texels,
+                       float* planes);
+    void EvaluateHits(Worker& worker, Index face, int domain, TexelHits const& hits, float* planes, size_t planeSize);
+    void Supersample(Worker& worker, TileGrid const& grid, std::vector<Index> const& faces, Band& band);
+    double FindMeanArea();
+    std::string NamePlace(eval::SurfaceSampler::Place const& place) const;
+
+    Scene const& _scene;
+    Far::TopologyRefiner const& _refiner;
+    BakeOptions const& _options;
+    std::vector<Map> const& _maps;
+    eval::Quantity _quantity;
+    bool _needsJacobian = false;
+    int _numPlanes = 0;
+    std::vector<double> _primvarValues;
+    std::vector<eval::FaceTree::Values> _values;
+    std::unique_ptr<eval::LimitSurface> _surface, _uvSurface;
+    std::vector<char> _isBaked;
+    std::vector<UVBounds> _bounds;
+    double _meanArea = 1.0;  // surface area per texture area
+    std::vector<std::atomic<bool>> _hasTexels;
+    std::atomic<size_t> _texelsCovered{0}, _overlaps{0}, _newtonFailures{0};
+    tbb::enumerable_thread_specific<std::unique_ptr<Worker>> _workers;
+};
+
+}  // namespace limn::engine

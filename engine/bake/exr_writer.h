@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/io/file.h"
+
+namespace limn::engine {
+
+enum class ExrCompression { None, Rle, Zips, Zip, Piz, Dwaa };
+
+struct ExrSpec {
+    int width = 0, height = 0;
+    bool isHalf = false;
+    bool hasMips = false;
+    ExrCompression compression = ExrCompression::Zip;
+    std::vector<std::string> channels;  ///< in the order of the planes given to Pack
+    std::vector<std::pair<std::string, std::string>> attributes;
+
+    static constexpr int kTileSize = 64;
+
+    int GetNumLevels() const;          ///< 1 without mips; ROUND_DOWN otherwise
+    int GetLevelWidth(int level) const;
+    int GetLevelHeight(int level) const;
+};
+
+/// The bytes of one finished tile.
+struct ExrTile {
+    int level = 0, x = 0, y = 0;  ///< in tiles
+    std::vector<uint8_t> bytes;
+    size_t numClamped = 0;        ///< finite values beyond the range of half
+};
+
+/// A tiled EXR file that appears complete or not at all. Tiles are compressed wherever they were
+/// made (Pack, any thread) and written one after the other (Write, one thread at a time), in the
+/// order of the calls, which the file keeps (RANDOM_Y).
+///
+/// ZIP, ZIPS and uncompressed tiles are finished here and handed to OpenEXR Core as chunks; the
+/// other kinds go through OpenEXR's own compressors when they are written.
+class ExrWriter {
+public:
+    /// \throws Error  Io
+    ExrWriter(std::string const& path, ExrSpec const& spec);
+    ~ExrWriter();
+
+    /// Makes a tile of `width` x `height` texels (a full tile, or what the level's edge leaves).
+    ///
+    /// \param planes  one per channel of the spec, the tile's first texel; rows `stride` floats apart
+    ExrTile Pack(int level, int x, int y, float const* const* planes, size_t stride) const;
+
+    /// \throws Error  Io: a full disk, ...
+    void Write(ExrTile const& tile);
+
+    /// Writes the file's index and gives it its name. \throws Error Io
+    void Commit();
+
+private:
+    struct Backend;
+    struct CoreBackend;
+    struct LibraryBackend;
+
+    std::string _path;
+    ExrSpec _spec;
+    std::vector<int> _sortedChannels;  // EXR keeps channels sorted by name
+    AtomicFile _file;
+    std::unique_ptr<Backend> _backend;
+};
+
+/// String attributes of an EXR file's header whose names start with `prefix`.
+///
+/// \return empty if the file does not exist or is no EXR file
+std::vector<std::pair<std::string, std::string>> ReadExrAttributes(std::string const& path,
+                                                                   std::string const& prefix);
+
+}  // namespace limn::engine

@@ -1,0 +1,269 @@
+#include "engine/bake/maps.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "far_ext/error.h"
+
+namespace limn::engine {
+
+using eval::Quantity;
+
+namespace {
+
+struct MapRow {
+    char const* name;
+    MapKind kind;
+    std::vector<std::string> channels;
+    Averaging averaging;
+    bool isSigned;
+    char const* units;
+    Quantity quantity;
+};
+
+std::vector<MapRow> const& GetTable() {
+    static std::vector<std::string> const y{"Y"}, rgb{"R", "G", "B"};
+    static std::vector<MapRow> const table{
+        {"mean", MapKind::Mean, y, Averaging::Plain, true, "1/length", Quantity::Curvature},
+        {"gaussian", MapKind::Gaussian, y, Averaging::Plain, true, "1/length^2", Quantity::Curvature},
+        {"k1", MapKind::K1, y, Averaging::Plain, true, "1/length", Quantity::Curvature},
+        {"k2", MapKind::K2, y, Averaging::Plain, true, "1/length", Quantity::Curvature},
+        {"curvedness", MapKind::Curvedness, y, Averaging::Plain, false, "1/length", Quantity::Curvature},
+        {"shape-index", MapKind::ShapeIndex, y, Averaging::Plain, true, "none", Quantity::Curvature},
+        {"curvature", MapKind::Curvature, {"k1", "k2", "mean", "gaussian"}, Averaging::Plain, true,
+         "1/length, gaussian 1/length^2", Quantity::Curvature},
+        {"principal-direction", MapKind::PrincipalDirection, rgb, Averaging::Line, true, "unit vector",
+         Quantity::Direction},
+        {"position", MapKind::Position, rgb, Averaging::Plain, true, "length", Quantity::Position},
+        {"normal", MapKind::Normal, rgb, Averaging::UnitVector, true, "unit vector", Quantity::Normal},
+        {"displacement", MapKind::Displacement, y, Averaging::Plain, true, "length", Quantity::Normal},
+        {"stretch", MapKind::Stretch, y, Averaging::Plain, true, "log2", Quantity::Tangents},
+    };
+    return table;
+}
+
+std::string ListNames() {
+    std::string names;
+    for (MapRow const& row : GetTable()) names += std::string(row.name) + ", ";
+    return names + "primvar:NAME";
+}
+
+Map MakePrimvarMap(std::string const& name, Scene const& scene) {
+    std::string const wanted = name.substr(std::string("primvar:").size());
+    int channel = 3;
+    for (Primvar const& primvar : scene.primvars) {
+        if (primvar.name != wanted) {
+            channel += primvar.numChannels;
+            continue;
+        }
+        Map map{MapKind::Primvar, name, {}, Averaging::Plain, false, "as in the mesh", Quantity::Position, channel};
+        static char const* const kNames[] = {"R", "G", "B", "A"};
+        if (primvar.numChannels == 1) map.channels = {"Y"};
+        else for (int c = 0; c < primvar.numChannels; ++c) map.channels.push_back(kNames[c]);
+        return map;
+    }
+    std::string known;
+    for (Primvar const& primvar : scene.primvars) known += (known.empty() ? "" : ", ") + primvar.name;
+    throw Error(ErrorCode::BadOption, fmt::format("--maps: '{}' has no primvar '{}'; it has: {}", scene.path,
+                                                  wanted, known.empty() ? "none" : known));
+}
+
+}  // namespace
+
+std::vector<Map> MakeMaps(MapOptions const& options, Scene const& scene) {
+    int numPrimvarChannels = 0;
+    for (Primvar const& primvar : scene.primvars) numPrimvarChannels += primvar.numChannels;
+    std::vector<Map> maps;
+    for (std::string const& name : options.names) {
+        auto const isSame = [&](Map const& map) { return map.name == name; };
+        if (std::any_of(maps.begin(), maps.end(), isSame)) {
+            throw Error(ErrorCode::BadOption, fmt::format("--maps: '{}' is asked for twice", name));
+        }
+        if (name.starts_with("primvar:")) {
+            maps.push_back(MakePrimvarMap(name, scene));
+            continue;
+        }
+        auto const row = std::find_if(GetTable().begin(), GetTable().end(),
+                                      [&](MapRow const& r) { return name == r.name; });
+        if (row == GetTable().end()) {
+            throw Error(ErrorCode::BadOption,
+                        fmt::format("--maps: there is no map '{}'; there are: {}", name, ListNames()));
+        }
+        Map map{row->kind, name, row->channels, row->averaging, row->isSigned, row->units, row->quantity, 0};
+        if (map.kind == MapKind::Displacement) {
+            if (!options.hasOtherMesh) {
+                throw Error(ErrorCode::BadOption, "--maps displacement needs --against MESH");
+            }
+            map.extraChannel = 3 + numPrimvarChannels;
+            if (options.isVector) map.channels = {"R", "G", "B"};
+            if (options.isVector && options.space == MapSpace::Tangent) map.quantity = Quantity::Tangents;
+        }
+        maps.push_back(std::move(map));
+    }
+    if (maps.empty()) throw Error(ErrorCode::BadOption, fmt::format("--maps: choose from {}", ListNames()));
+    return maps;
+}
+
+eval::Quantity FindQuantity(std::span<Map const> maps) {
+    Quantity most = Quantity::Position;
+    for (Map const& map : maps) most = std::max(most, map.quantity);
+    return most;
+}
+
+bool NeedsJacobian(Map const& map, MapOptions const& options) {
+    return map.kind == MapKind::Stretch ||
+           (map.kind == MapKind::Displacement && options.isVector && options.space == MapSpace::Tangent);
+}
+
+float PortableAtan2(float y, float x) {
+    double const ax = std::abs(static_cast<double>(x)), ay = std::abs(static_cast<double>(y));
+    double const large = std::max(ax, ay), small = std::min(ax, ay);
+    if (large == 0.0) return 0.0f;
+    constexpr double kPi = 3.14159265358979323846;
+    // atan(r) for r in [0, 1]: fold at tan(pi/8), then the series of the small rest.
+    double r = small / large, base = 0.0;
+    constexpr double kTan = 0.41421356237309503;
+    if (r > kTan) {
+        base = kPi / 4;
+        r = (r - 1.0) / (r + 1.0);
+    }
+    double const z = r * r;
+    double sum = 0.0;
+    for (int k = 21; k >= 1; k -= 2) sum = sum * -z + 1.0 / k;
+    double angle = base + r * sum;
+    if (ay > ax) angle = kPi / 2 - angle;
+    if (x < 0.0f) angle = kPi - angle;
+    return static_cast<float>(y < 0.0f ? -angle : angle);
+}
+
+float PortableLog2(float x) {
+    auto const bits = std::bit_cast<uint64_t>(static_cast<double>(x));
+    int exponent = static_cast<int>(bits >> 52) - 1023;
+    double mantissa = std::bit_cast<double>((bits & 0xfffffffffffffull) | 0x3ff0000000000000ull);
+    if (mantissa > 1.4142135623730951) {
+        mantissa *= 0.5;
+        ++exponent;
+    }
+    // ln m = 2 artanh((m - 1) / (m + 1)), |argument| < 0.172
+    double const r = (mantissa - 1.0) / (mantissa + 1.0), z = r * r;
+    double sum = 0.0;
+    for (int k = 15; k >= 1; k -= 2) sum = sum * z + 1.0 / k;
+    constexpr double kTwoOverLn2 = 2.8853900817779268;
+    return static_cast<float>(exponent + kTwoOverLn2 * r * sum);
+}
+
+namespace {
+
+using eval::SurfaceChannel;
+
+float ShapeIndex(float k1, float k2) {
+    if (k1 == 0.0f && k2 == 0.0f) return 0.0f;
+    return PortableAtan2(k1 + k2, k1 - k2) * 0.63661977236758134f;
+}
+
+void EvaluateDisplacement(Map const& map, MapOptions const& options, Quantity quantity, float const* planes,
+                          size_t stride, size_t i, std::span<std::array<double, 4> const> jacobians,
+                          float* out, size_t outStride) {
+    auto const vector = [&](size_t channel) {
+        return Eigen::Vector3d(planes[channel * stride + i], planes[(channel + 1) * stride + i],
+                               planes[(channel + 2) * stride + i]);
+    };
+    size_t const other = static_cast<size_t>(eval::GetNumChannels(quantity) + map.extraChannel - 3);
+    Eigen::Vector3d const difference = vector(other) - vector(eval::kPositionX);
+    Eigen::Vector3d const normal = vector(eval::kNormalX);
+    if (!options.isVector) {
+        out[i] = static_cast<float>(difference.dot(normal));
+        return;
+    }
+    Eigen::Vector3d result = difference;
+    if (options.space == MapSpace::Tangent) {
+        // dP/du = P_s s_u + P_t t_u, with d(s,t)/d(u,v) the inverse of the Jacobian.
+        auto const& [us, ut, vs, vt] = jacobians[i];
+        double const det = us * vt - ut * vs;
+        double const sign = det < 0.0 ? -1.0 : 1.0;
+        Eigen::Vector3d along = sign * (vt * vector(eval::kTangentSX) - vs * vector(eval::kTangentTX));
+        along -= along.dot(normal) * normal;
+        double const length = along.norm();
+        along = length > 0.0 ? Eigen::Vector3d(along / length) : normal.unitOrthogonal();
+        result = {difference.dot(along), difference.dot(normal.cross(along)), difference.dot(normal)};
+    }
+    for (size_t c = 0; c < 3; ++c) out[c * outStride + i] = static_cast<float>(result[static_cast<int>(c)]);
+}
+
+float Stretch(float const* planes, size_t stride, size_t i, std::array<double, 4> const& jacobian,
+              double meanArea) {
+    auto const at = [&](int channel) {
+        return Eigen::Vector3d(planes[channel * stride + i], planes[(channel + 1) * stride + i],
+                               planes[(channel + 2) * stride + i]);
+    };
+    double const area = at(eval::kTangentSX).cross(at(eval::kTangentTX)).norm();
+    double const texture = std::abs(jacobian[0] * jacobian[3] - jacobian[1] * jacobian[2]);
+    double const ratio = area / (texture * meanArea);
+    // A point without area or without texture area has no stretch; the bounds keep it a number.
+    if (!(ratio > 0x1p-60)) return -60.0f;
+    return ratio < 0x1p60 ? PortableLog2(static_cast<float>(ratio)) : 60.0f;
+}
+
+}  // namespace
+
+void EvaluateMap(Map const& map, MapOptions const& options, Quantity quantity, float const* planes,
+                 size_t stride, size_t count, std::span<std::array<double, 4> const> jacobians,
+                 double meanArea, float* out, size_t outStride) {
+    auto const copy = [&](int channel, int to) {
+        std::copy_n(planes + static_cast<size_t>(channel) * stride, count,
+                    out + static_cast<size_t>(to) * outStride);
+    };
+    auto const copyVector = [&](int channel) {
+        for (int c = 0; c < 3; ++c) copy(channel + c, c);
+    };
+    float const* const k1 = planes + eval::kK1 * stride;
+    float const* const k2 = planes + eval::kK2 * stride;
+    switch (map.kind) {
+        case MapKind::Mean: copy(eval::kMean, 0); break;
+        case MapKind::Gaussian: copy(eval::kGaussian, 0); break;
+        case MapKind::K1: copy(eval::kK1, 0); break;
+        case MapKind::K2: copy(eval::kK2, 0); break;
+        case MapKind::Curvature:
+            copy(eval::kK1, 0);
+            copy(eval::kK2, 1);
+            copy(eval::kMean, 2);
+            copy(eval::kGaussian, 3);
+            break;
+        case MapKind::Curvedness:
+            for (size_t i = 0; i < count; ++i) out[i] = std::sqrt(0.5f * (k1[i] * k1[i] + k2[i] * k2[i]));
+            break;
+        case MapKind::ShapeIndex:
+            for (size_t i = 0; i < count; ++i) out[i] = ShapeIndex(k1[i], k2[i]);
+            break;
+        case MapKind::PrincipalDirection: copyVector(eval::kDirectionX); break;
+        case MapKind::Position: copyVector(eval::kPositionX); break;
+        case MapKind::Normal: copyVector(eval::kNormalX); break;
+        case MapKind::Displacement:
+            for (size_t i = 0; i < count; ++i) {
+                EvaluateDisplacement(map, options, quantity, planes, stride, i, jacobians, out, outStride);
+            }
+            break;
+        case MapKind::Stretch:
+            for (size_t i = 0; i < count; ++i) out[i] = Stretch(planes, stride, i, jacobians[i], meanArea);
+            break;
+        case MapKind::Primvar:
+            for (int c = 0; c < map.GetNumChannels(); ++c) {
+                copy(eval::GetNumChannels(quantity) + map.extraChannel - 3 + c, c);
+            }
+            break;
+    }
+    if (options.hasEncoding) {
+        auto const scale = static_cast<float>(options.encodeScale);
+        auto const offset = static_cast<float>(options.encodeOffset);
+        for (int c = 0; c < map.GetNumChannels(); ++c) {
+            float* const plane = out + static_cast<size_t>(c) * outStride;
+            for (size_t i = 0; i < count; ++i) plane[i] = plane[i] * scale + offset;
+        }
+    }
+}
+
+}  // namespace limn::engine

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/bake/uv_raster.h"
+#include "engine/scene.h"
+#include "eval/surface_kernel.h"
+
+namespace limn::engine {
+
+enum class MapKind {
+    Mean, Gaussian, K1, K2, Curvedness, ShapeIndex, Curvature, PrincipalDirection, Position, Normal,
+    Displacement, Stretch, Primvar
+};
+
+/// How texels of a map are averaged (supersampling, mip levels): plainly, or as what they are.
+enum class Averaging { Plain, UnitVector, Line };
+
+enum class MapSpace { Object, Tangent };
+
+/// One map of a bake: what is measured, and the channels it fills (bake.md, "Maps").
+struct Map {
+    MapKind kind;
+    std::string name;                   ///< as the user wrote it
+    std::vector<std::string> channels;  ///< EXR names within the map, e.g. "R", "G", "B"
+    Averaging averaging = Averaging::Plain;
+    bool isSigned = true;
+    std::string units;
+    eval::Quantity quantity;            ///< what it needs of the surface
+    int extraChannel = 0;               ///< of the tree's values: where a primvar or the other mesh starts
+
+    int GetNumChannels() const { return static_cast<int>(channels.size()); }
+};
+
+struct MapOptions {
+    std::vector<std::string> names;
+    bool isVector = false;             ///< --vector
+    MapSpace space = MapSpace::Object;
+    bool hasOtherMesh = false;         ///< --against was given
+    bool hasEncoding = false;
+    double encodeScale = 1.0, encodeOffset = 0.0;
+};
+
+/// Turns names into maps. \throws Error BadOption, listing the maps there are
+std::vector<Map> MakeMaps(MapOptions const& options, Scene const& scene);
+
+/// The least quantity that serves all maps.
+eval::Quantity FindQuantity(std::span<Map const> maps);
+
+/// True where a map needs d(u,v)/d(s,t): tangent space and stretch.
+bool NeedsJacobian(Map const& map, MapOptions const& options);
+
+/// Computes one map's channels for a block of samples.
+///
+/// \param planes     a block of SurfaceSampler: planes[c * stride + i]
+/// \param quantity   what the block holds
+/// \param jacobians  per sample; empty unless NeedsJacobian
+/// \param meanArea   surface area per texture area over the whole mesh (stretch)
+/// \param out        out[c * outStride + i]
+void EvaluateMap(Map const& map, MapOptions const& options, eval::Quantity quantity, float const* planes,
+                 size_t stride, size_t count, std::span<std::array<double, 4> const> jacobians,
+                 double meanArea, float* out, size_t outStride);
+
+/// arctangent of y / x in all quadrants and the binary logarithm, from basic operations only: the
+/// same bits on every CPU, accurate to 1e-7 (libm's depend on the CPU).
+float PortableAtan2(float y, float x);
+float PortableLog2(float x);
+
+}  // namespace limn::engine

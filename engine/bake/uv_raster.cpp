@@ -1,0 +1,289 @@
+#include "engine/bake/uv_raster.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "eval/patch_polynomial.h"
+#include "eval/surface_kernel.h"
+#include "eval/surface_sample.h"
+
+namespace limn::engine {
+
+namespace {
+
+constexpr double kCoveredTexels = 1e-4;  // a texel this near to a face is covered (bake.md)
+constexpr double kClampParameter = 1e-6;
+constexpr double kOverlapParameter = 1e-3;  // nearer to an edge two faces may well share a texel
+constexpr int kMaxNewtonSteps = 12;
+constexpr int kMaxDepth = 30;       // pieces below 2^-30 of a face are linear to any precision
+constexpr size_t kFlushAt = 1024;   // candidates per Newton batch
+
+}  // namespace
+
+void TexelBand::Reset(int first, int rows, int tileWidth) {
+    firstRow = first;
+    numRows = rows;
+    width = tileWidth;
+    size_t const count = static_cast<size_t>(rows) * tileWidth;
+    owner.assign(count, -1);
+    overlap.assign(count, 0);
+    failed.assign(count, 0);
+}
+
+/// A polynomial piece of the texture map in texels about a whole-numbered origin.
+struct UVRaster::Piece {
+    double coefficients[2][16];
+    double originX, originY;
+    double bounds[2][3];  // of |d2/dxx|, |d2/dxy|, |d2/dyy| over the piece, per coordinate
+    far_ext::SubDomain domain;
+};
+
+UVRaster::UVRaster(eval::LimitSurface const& surface, std::span<double const> uvs)
+    : _tree(surface, uvs, 2), _isTriangle(surface.IsLoop()) {}
+
+UVBounds UVRaster::GetBounds(Index face) {
+    _tree.Bind(face);
+    double low[2], high[2];
+    for (int k = 0; k < 2; ++k) {
+        auto const bounds = _tree.GetBounds(0, k);
+        low[k] = bounds[0];
+        high[k] = bounds[1];
+        if (_tree.IsLeaf(0) && !_isTriangle) {
+            // Terms bounded one by one hug a bicubic piece closer than the spline's points.
+            double const* const c = _tree.GetLeaf(0).coefficients + 16 * k;
+            double const middle = _tree.GetOrigin(0)[k] + c[0];
+            double reach = 0.0;
+            for (int i = 1; i < 16; ++i) reach += std::abs(c[i]) * std::ldexp(1.0, -(i % 4 + i / 4));
+            low[k] = std::max(low[k], middle - reach);
+            high[k] = std::min(high[k], middle + reach);
+        }
+    }
+    // Rounded outwards.
+    auto const down = [](double x) { return std::nextafter(static_cast<float>(x), -1e30f); };
+    auto const up = [](double x) { return std::nextafter(static_cast<float>(x), 1e30f); };
+    return {down(low[0]), up(high[0]), down(low[1]), up(high[1])};
+}
+
+std::array<double, 2> UVRaster::Evaluate(int domain, double s, double t) {
+    return {eval::EvaluateChannel(_tree, domain, s, t, 0), eval::EvaluateChannel(_tree, domain, s, t, 1)};
+}
+
+std::array<double, 4> UVRaster::GetJacobian(int domain, double s, double t) {
+    auto const at = _tree.Locate(domain, s, t, kMaxDepth);
+    std::array<double, 4> jacobian{};
+    for (int k = 0; k < 2; ++k) {
+        double const* const c = at.coefficients + k * _tree.GetNumCoefficients();
+        auto const v = _isTriangle ? eval::EvaluateTrianglePolynomial(c, at.x, at.y)
+                                   : eval::EvaluateQuadPolynomial(c, at.x, at.y);
+        jacobian[2 * k] = v[1] * at.scale;
+        jacobian[2 * k + 1] = v[2] * at.scale;
+    }
+    return jacobian;
+}
+
+std::vector<TexelHits> const& UVRaster::Rasterise(Index face, TileGrid const& grid, TexelBand& band) {
+    _tree.Bind(face);
+    _face = face;
+    _grid = grid;
+    _band = &band;
+    size_t const numDomains = static_cast<size_t>(_tree.GetNumDomains());
+    if (_hits.size() < numDomains) _hits.resize(numDomains);
+    for (size_t domain = 0; domain < _hits.size(); ++domain) {
+        _hits[domain].Clear();
+        if (domain < numDomains) RasterNode(_tree.GetRoot(static_cast<int>(domain)), 0, _hits[domain]);
+    }
+    return _hits;
+}
+
+void UVRaster::RasterNode(int node, int depth, TexelHits& hits) {
+    if (_tree.IsLeaf(node)) return RasterPiece(_tree.GetLeaf(node), _tree.GetDomain(node), hits);
+    // The node's points hold its limit; where no sample lies among them nothing is to be found.
+    auto const u = _tree.GetBounds(node, 0), v = _tree.GetBounds(node, 1);
+    double minX = _grid.ToX(u[0]), maxX = _grid.ToX(u[1]), minY = _grid.ToY(v[1]), maxY = _grid.ToY(v[0]);
+    double const slack = 2 * kCoveredTexels;
+    minX = std::max(minX - slack, 0.0);
+    maxX = std::min(maxX + slack, _grid.width - 1.0);
+    minY = std::max(minY - slack, static_cast<double>(_band->firstRow));
+    maxY = std::min(maxY + slack, _band->firstRow + _band->numRows - 1.0);
+    if (std::ceil(minX) > std::floor(maxX) || std::ceil(minY) > std::floor(maxY)) return;
+    if (depth >= kMaxDepth) return RasterPiece(_tree.GetLinearLeaf(node), _tree.GetDomain(node), hits);
+    for (int child = 0; child < 4; ++child) RasterNode(_tree.GetChild(node, child), depth + 1, hits);
+}
+
+void UVRaster::RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain const& domain, TexelHits& hits) {
+    int const n = _tree.GetNumCoefficients();
+    Piece piece;
+    piece.domain = domain;
+    double const scale[2] = {static_cast<double>(_grid.width), -static_cast<double>(_grid.height)};
+    for (int k = 0; k < 2; ++k) {
+        for (int i = 0; i < n; ++i) piece.coefficients[k][i] = leaf.coefficients[k * n + i] * scale[k];
+    }
+    double const centreX = _grid.ToX(leaf.origin[0] + leaf.coefficients[0]);
+    double const centreY = _grid.ToY(leaf.origin[1] + leaf.coefficients[n]);
+    if (!(std::abs(centreX) < 1e9 && std::abs(centreY) < 1e9)) return;  // far from any tile
+    piece.originX = std::floor(centreX);
+    piece.originY = std::floor(centreY);
+    piece.coefficients[0][0] = centreX - piece.originX;
+    piece.coefficients[1][0] = centreY - piece.originY;
+
+    // Bounds of the map and of its second derivatives over the piece, term by term.
+    double const reach = _isTriangle ? 2.0 / 3.0 : 0.5;
+    double extent[2] = {0, 0};
+    double power[8] = {1, reach};
+    for (int i = 2; i < 8; ++i) power[i] = power[i - 1] * reach;
+    for (int k = 0; k < 2; ++k) {
+        double* const b = piece.bounds[k];
+        b[0] = b[1] = b[2] = 0.0;
+        int index = 0;
+        int const numJ = _isTriangle ? 5 : 4;
+        for (int j = 0; j < numJ; ++j) {
+            for (int i = 0; i < (_isTriangle ? 5 - j : 4); ++i, ++index) {
+                double const c = std::abs(piece.coefficients[k][index]);
+                if (i + j > 0) extent[k] += c * power[i + j];
+                if (i > 1) b[0] += i * (i - 1) * c * power[i + j - 2];
+                if (i > 0 && j > 0) b[1] += i * j * c * power[i + j - 2];
+                if (j > 1) b[2] += j * (j - 1) * c * power[i + j - 2];
+            }
+        }
+    }
+    double const top = _band->firstRow - 1.0, bottom = _band->firstRow + _band->numRows + 0.0;
+    if (centreY + extent[1] < top || centreY - extent[1] > bottom || centreX + extent[0] < -1.0 ||
+        centreX - extent[0] > _grid.width) {
+        return;
+    }
+    double worst = 0.0;
+    for (auto const& b : piece.bounds) worst = std::max(worst, 0.125 * (b[0] + 2 * b[1] + b[2]));
+    int const numCells = std::clamp(static_cast<int>(std::ceil(std::sqrt(worst / 0.4))), 1, 256);
+    double const half = 0.5 / numCells;
+    for (int j = 0; j < numCells; ++j) {
+        for (int i = 0; i < numCells; ++i) {
+            if (_isTriangle && i + j >= numCells) continue;
+            RasterCell(piece, (2 * i + 1) * half - _tree.GetCentre(), (2 * j + 1) * half - _tree.GetCentre(),
+                       half, hits);
+        }
+    }
+    Flush(piece, hits);
+}
+
+void UVRaster::RasterCell(Piece const& piece, double x, double y, double half, TexelHits& hits) {
+    auto const u = _isTriangle ? eval::EvaluateTrianglePolynomial(piece.coefficients[0], x, y)
+                               : eval::EvaluateQuadPolynomial(piece.coefficients[0], x, y);
+    auto const v = _isTriangle ? eval::EvaluateTrianglePolynomial(piece.coefficients[1], x, y)
+                               : eval::EvaluateQuadPolynomial(piece.coefficients[1], x, y);
+    // How far the map strays from its linear part within the cell, plus what counts as covered.
+    double stray[2];
+    for (int k = 0; k < 2; ++k) {
+        double const* const b = piece.bounds[k];
+        stray[k] = 0.5 * half * half * (b[0] + 2 * b[1] + b[2]) + 10 * kCoveredTexels;
+    }
+    double const cx = piece.originX + u[0], cy = piece.originY + v[0];
+    double const us = u[1], ut = u[2], vs = v[1], vt = v[2];
+    double const reachX = (std::abs(us) + std::abs(ut)) * half + stray[0];
+    double const reachY = (std::abs(vs) + std::abs(vt)) * half + stray[1];
+    int const firstY = std::max(_band->firstRow, static_cast<int>(std::ceil(cy - reachY)));
+    int const lastY = std::min(_band->firstRow + _band->numRows - 1, static_cast<int>(std::floor(cy + reachY)));
+    double const det = us * vt - ut * vs;
+    double const size = us * us + ut * ut + vs * vs + vt * vt;
+    bool const isInvertible = std::abs(det) > 1e-9 * size;
+    double const inverse = isInvertible ? 1.0 / det : 0.0;
+    double const limitS = half + (stray[0] * std::abs(vt) + stray[1] * std::abs(ut)) * std::abs(inverse);
+    double const limitT = half + (stray[0] * std::abs(vs) + stray[1] * std::abs(us)) * std::abs(inverse);
+    for (int row = firstY; row <= lastY; ++row) {
+        double from = cx - reachX, to = cx + reachX;
+        double const dy = row - cy;
+        if (isInvertible) {
+            // ds = (vt dx - ut dy) / det and dt = (us dy - vs dx) / det must stay within the cell.
+            auto const narrow = [&](double slope, double constant, double limit) {
+                if (std::abs(slope) < 1e-12) {
+                    if (std::abs(constant) > limit) to = from - 1.0;
+                    return;
+                }
+                double const a = (-limit - constant) / slope, b = (limit - constant) / slope;
+                from = std::max(from, cx + std::min(a, b));
+                to = std::min(to, cx + std::max(a, b));
+            };
+            narrow(vt * inverse, -ut * dy * inverse, limitS);
+            narrow(-vs * inverse, us * dy * inverse, limitT);
+        }
+        if (from > to) continue;
+        int const firstX = std::max(0, static_cast<int>(std::ceil(std::max(from, -1.0))));
+        int const lastX = std::min(_grid.width - 1, static_cast<int>(std::floor(std::min(to, 1e9))));
+        for (int column = firstX; column <= lastX; ++column) {
+            double const dx = column - cx;
+            double const ds = (vt * dx - ut * dy) * inverse, dt = (us * dy - vs * dx) * inverse;
+            _texel.push_back((row - _band->firstRow) * _band->width + column);
+            _targetX.push_back(column - piece.originX);
+            _targetY.push_back(row - piece.originY);
+            _x.push_back(x + std::clamp(ds, -half, half));
+            _y.push_back(y + std::clamp(dt, -half, half));
+        }
+        if (_texel.size() >= kFlushAt) Flush(piece, hits);
+    }
+}
+
+void UVRaster::Flush(Piece const& piece, TexelHits& hits) {
+    size_t const count = _texel.size();
+    if (count == 0) return;
+    size_t const padded = (count + eval::kInversionLanes - 1) / eval::kInversionLanes * eval::kInversionLanes;
+    for (auto* array : {&_targetX, &_targetY, &_x, &_y}) array->resize(padded, array->back());
+    _residual.resize(padded);
+    double const margin = 0.25;
+    eval::InversionBatch const batch{&piece.coefficients[0][0],
+                                     _targetX.data(),
+                                     _targetY.data(),
+                                     _x.data(),
+                                     _y.data(),
+                                     _residual.data(),
+                                     static_cast<int>(count),
+                                     -_tree.GetCentre() - margin,
+                                     1.0 - _tree.GetCentre() + margin,
+                                     kMaxNewtonSteps};
+    eval::InvertTextureMap(batch, _isTriangle);
+    for (size_t i = 0; i < count; ++i) Accept(piece, _texel[i], _x[i], _y[i], _residual[i], hits);
+    for (auto* array : {&_targetX, &_targetY, &_x, &_y}) array->clear();
+    _texel.clear();
+}
+
+void UVRaster::Accept(Piece const& piece, int texel, double x, double y, double residual, TexelHits& hits) {
+    Index& owner = _band->owner[texel];
+    if (owner == _face) return;  // found from a neighbouring cell or piece before
+    double const centre = _tree.GetCentre();
+    double s = x + centre, t = y + centre;
+    // The nearest place of the domain.
+    double cs = std::clamp(s, 0.0, 1.0), ct = std::clamp(t, 0.0, 1.0);
+    if (_isTriangle && cs + ct > 1.0) {
+        double const excess = 0.5 * (cs + ct - 1.0);
+        cs = std::clamp(cs - excess, 0.0, 1.0);
+        ct = 1.0 - cs;
+    }
+    double const outside = std::max(std::abs(cs - s), std::abs(ct - t));
+    if (residual > kCoveredTexels) {
+        if (outside == 0.0) _band->failed[texel] = 1;
+        return;
+    }
+    if (outside > kClampParameter) {
+        if (outside > 0.2) return;
+        // Outside; covered only if the domain's edge passes within kCoveredTexels.
+        double distance = 0.0;
+        int const row = texel / _band->width + _band->firstRow, column = texel % _band->width;
+        for (int k = 0; k < 2; ++k) {
+            auto const value =
+                _isTriangle ? eval::EvaluateTrianglePolynomial(piece.coefficients[k], cs - centre, ct - centre)
+                            : eval::EvaluateQuadPolynomial(piece.coefficients[k], cs - centre, ct - centre);
+            double const target = k == 0 ? column - piece.originX : row - piece.originY;
+            distance += (value[0] - target) * (value[0] - target);
+        }
+        if (distance > kCoveredTexels * kCoveredTexels) return;
+    }
+    if (owner >= 0) {
+        double const inside = std::min({cs, ct, _isTriangle ? 1.0 - cs - ct : std::min(1.0 - cs, 1.0 - ct)});
+        if (inside > kOverlapParameter && outside == 0.0) _band->overlap[texel] = 1;
+        return;
+    }
+    owner = _face;
+    hits.texel.push_back(texel);
+    hits.s.push_back(piece.domain.origin[0] + piece.domain.scale * cs);
+    hits.t.push_back(piece.domain.origin[1] + piece.domain.scale * ct);
+}
+
+}  // namespace limn::engine

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "eval/limit_surface.h"
+
+namespace limn::engine {
+
+/// Where the samples of one texture tile lie (bake.md, "From texel to surface point"). The sample of
+/// texel (x, y), y = 0 at the top, is at
+///     u = tileU + (x + offsetX) / width,   v = tileV + 1 - (y + offsetY) / height.
+struct TileGrid {
+    int width = 0, height = 0;
+    int tileU = 0, tileV = 0;
+    double offsetX = 0.5, offsetY = 0.5;
+
+    /// Texel coordinates of (u, v): whole numbers at the samples.
+    double ToX(double u) const { return (u - tileU) * width - offsetX; }
+    double ToY(double v) const { return (tileV + 1 - v) * height - offsetY; }
+};
+
+/// Rows [firstRow, firstRow + numRows) of a tile: who covers which texel.
+struct TexelBand {
+    int firstRow = 0, numRows = 0, width = 0;
+    std::vector<Index> owner;      ///< per texel: the lowest face that covers it, or -1
+    std::vector<uint8_t> overlap;  ///< 1 where another face covers it too, apart from shared edges
+    std::vector<uint8_t> failed;   ///< 1 where a candidate lay inside but did not converge
+
+    void Reset(int first, int rows, int tileWidth);
+};
+
+/// A texel covered by a face, and where on it.
+struct TexelHits {
+    std::vector<int> texel;  ///< index into the band
+    std::vector<double> s, t;
+    void Clear() {
+        texel.clear();
+        s.clear();
+        t.clear();
+    }
+};
+
+/// Bounds of a face's texture coordinates: those of its control points, which hold the limit.
+struct UVBounds {
+    float minU, maxU, minV, maxV;
+};
+
+/// Inverts the texture map, itself a subdivision surface: which texels does a face cover, and where
+/// on the face do they lie?
+///
+/// Search   the map's polynomial pieces are cut into cells on which it deviates from linear by less
+///          than half a texel; the linear map of a cell, grown by that deviation, gives candidates
+///          and a start for Newton's method on the exact map.
+/// Threads  one per thread
+class UVRaster {
+public:
+    /// \param surface  face-varying limit surface; \param uvs 2 per value; both kept by reference
+    UVRaster(eval::LimitSurface const& surface, std::span<double const> uvs);
+
+    /// The texels of the band that `face` covers and no face before it does, one TexelHits per
+    /// domain. Faces must come in ascending order.
+    std::vector<TexelHits> const& Rasterise(Index face, TileGrid const& grid, TexelBand& band);
+
+    UVBounds GetBounds(Index face);
+
+    /// Makes `face` the one the functions below speak of; Rasterise and GetBounds do so too.
+    void Bind(Index face) { _tree.Bind(face); }
+
+    /// (u, v) at a place, and d(u,v)/d(s,t) there: us, ut, vs, vt.
+    std::array<double, 2> Evaluate(int domain, double s, double t);
+    std::array<double, 4> GetJacobian(int domain, double s, double t);
+
+private:
+    struct Piece;
+
+    void RasterNode(int node, int depth, TexelHits& hits);
+    void RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain const& domain, TexelHits& hits);
+    void RasterCell(Piece const& piece, double x, double y, double half, TexelHits& hits);
+    void Flush(Piece const& piece, TexelHits& hits);
+    void Accept(Piece const& piece, int texel, double x, double y, double residual, TexelHits& hits);
+
+    eval::FaceTree _tree;
+    bool _isTriangle;
+    std::vector<TexelHits> _hits;
+    // the call at hand
+    Index _face = -1;
+    TileGrid _grid;
+    TexelBand* _band = nullptr;
+    // candidates of the piece at hand
+    std::vector<int> _texel;
+    std::vector<double> _targetX, _targetY, _x, _y, _residual;
+};
+
+}  // namespace limn::engine

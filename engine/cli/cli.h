@@ -1,0 +1,78 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "engine/job.h"
+#include "engine/scene.h"
+#include "far_ext/refiner.h"
+
+namespace limn::cli {
+
+/// Version and build, as `limn --version` prints it and reports and headers quote it.
+std::string GetVersion();
+
+/// Options every verb shares (docs: "The command line").
+struct CommonOptions {
+    std::optional<std::string> scheme, boundary, fvar, creases, triangles;
+    std::string orientation = "right", precision = "float", progress = "auto", reportPath;
+    int numThreads = 0;
+    bool isQuiet = false, isVerbose = false;
+
+    bool IsLeftHanded() const { return orientation == "left"; }
+    bool IsDouble() const { return precision == "double"; }
+};
+
+/// What a verb runs with: its job, and the report it fills.
+class Context {
+public:
+    Context(CommonOptions const& common, std::string command, std::vector<std::string> arguments);
+
+    CommonOptions const& GetCommon() const { return _common; }
+    engine::Job& GetJob() { return _job; }
+    nlohmann::json& GetReport() { return _report; }
+
+    /// A mesh as read, with the subdivision options applied, and its topology.
+    struct Mesh {
+        engine::Scene scene;
+        std::unique_ptr<Far::TopologyRefiner> refiner;
+    };
+    enum class Defects { Warn, Keep };
+
+    /// Reads and checks a mesh, and warns of what the reader saw and (unless kept) of its defects.
+    Mesh Load(std::string const& path, Defects defects = Defects::Warn);
+
+    /// Fills the keys all reports have and writes the report where it was asked for.
+    void WriteReport();
+
+    /// \throws Error BadOption  if --report - would mix with data on stdout
+    void KeepStdoutForData(bool writesToStdout) const;
+
+private:
+    CommonOptions const& _common;
+    engine::Job _job;
+    nlohmann::json _report;
+    std::chrono::steady_clock::time_point _start;
+};
+
+/// A verb: its subcommand of the command line, and what to do. Returns the exit status.
+struct Verb {
+    CLI::App* app;
+    std::function<int(Context&)> run;
+};
+
+Verb AddInfo(CLI::App& app);
+Verb AddEval(CLI::App& app);
+Verb AddBake(CLI::App& app);
+Verb AddRefine(CLI::App& app);
+
+/// Exit statuses that are not failures of the program.
+inline constexpr int kDone = 0, kNotReached = 4;
+
+}  // namespace limn::cli

@@ -1,0 +1,166 @@
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include "engine/bake/bake.h"
+#include "engine/cli/cli.h"
+#include "engine/options_text.h"
+#include "far_ext/error.h"
+
+namespace limn::cli {
+
+namespace {
+
+struct Arguments {
+    std::vector<std::string> meshes;
+    std::string pattern, size = "2048", compression = "zip", against, space = "object", encode;
+    std::vector<std::string> maps, tiles, groups;
+    int samples = 1, padding = 16;
+    bool isHalf = false, hasMips = false, hasCoverage = false, hasPreview = false, isVector = false,
+         skipExisting = false;
+};
+
+int ParseInteger(std::string const& option, std::string_view text, int low, int high) {
+    int value = 0;
+    auto const [stop, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (code != std::errc() || stop != text.data() + text.size() || value < low || value > high) {
+        throw Error(ErrorCode::BadOption, fmt::format("{}: '{}' is not a whole number from {} to {}", option, text, low, high));
+    }
+    return value;
+}
+
+/// "2048" or "4096x2048".
+void ParseSize(std::string const& text, engine::BakeOptions& options) {
+    size_t const x = text.find('x');
+    options.width = ParseInteger("--size", std::string_view(text).substr(0, x), 1, 65536);
+    options.height = x == std::string::npos
+                         ? options.width
+                         : ParseInteger("--size", std::string_view(text).substr(x + 1), 1, 65536);
+}
+
+/// "1001" or "1003-1005".
+void ParseTiles(std::vector<std::string> const& texts, engine::BakeOptions& options) {
+    for (std::string const& text : texts) {
+        size_t const dash = text.find('-');
+        int const first = ParseInteger("--tiles", std::string_view(text).substr(0, dash), 1001, 9999);
+        int const last = dash == std::string::npos
+                             ? first
+                             : ParseInteger("--tiles", std::string_view(text).substr(dash + 1), first, 9999);
+        for (int tile = first; tile <= last; ++tile) options.tiles.push_back(tile);
+    }
+}
+
+double ParseNumber(std::string const& option, std::string_view text) {
+    double value = 0.0;
+    auto const [stop, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (code != std::errc() || stop != text.data() + text.size() || !std::isfinite(value)) {
+        throw Error(ErrorCode::BadOption, fmt::format("{}: '{}' is not a number", option, text));
+    }
+    return value;
+}
+
+engine::BakeOptions MakeOptions(Arguments const& a, CommonOptions const& common) {
+    engine::BakeOptions options;
+    options.pattern = a.pattern;
+    options.maps.names = a.maps;
+    options.maps.isVector = a.isVector;
+    options.maps.space = a.space == "tangent" ? engine::MapSpace::Tangent : engine::MapSpace::Object;
+    options.maps.hasOtherMesh = !a.against.empty();
+    if (!a.encode.empty()) {
+        size_t const comma = a.encode.find(',');
+        if (comma == std::string::npos) throw Error(ErrorCode::BadOption, "--encode: scale,offset is needed, e.g. 0.5,0.5");
+        options.maps.hasEncoding = true;
+        options.maps.encodeScale = ParseNumber("--encode", std::string_view(a.encode).substr(0, comma));
+        options.maps.encodeOffset = ParseNumber("--encode", std::string_view(a.encode).substr(comma + 1));
+    }
+    ParseSize(a.size, options);
+    ParseTiles(a.tiles, options);
+    options.samplesPerSide = a.samples;
+    options.padding = a.padding;
+    options.isHalf = a.isHalf;
+    options.hasMips = a.hasMips;
+    options.hasCoverage = a.hasCoverage;
+    options.hasPreview = a.hasPreview;
+    options.compression = engine::ParseCompression(a.compression);
+    options.groups = a.groups;
+    options.skipExisting = a.skipExisting;
+    options.isLeftHanded = common.IsLeftHanded();
+    options.wantsChecksums = !common.reportPath.empty();
+    options.version = GetVersion();
+    return options;
+}
+
+void AddToReport(nlohmann::json& report, engine::BakeReport const& bake) {
+    auto const add = [&](char const* key, size_t value) { report[key] = report.value(key, size_t{0}) + value; };
+    add("texels_covered", bake.texelsCovered);
+    add("overlaps", bake.overlaps);
+    add("newton_failures", bake.newtonFailures);
+    add("moved_samples", bake.movedSamples);
+    add("degenerate_samples", bake.degenerateSamples);
+    add("clamped", bake.clamped);
+    for (int tile : bake.tiles) report["tiles"].push_back(tile);
+    for (auto const& output : bake.outputs) {
+        nlohmann::json entry{{"file", output.path},     {"map", output.map},       {"tile", output.tile},
+                             {"width", output.width},   {"height", output.height}, {"sha256", output.sha256},
+                             {"skipped", output.wasSkipped}};
+        if (!output.wasSkipped) {
+            entry["min"] = output.min;
+            entry["max"] = output.max;
+        }
+        report["outputs"].push_back(std::move(entry));
+    }
+}
+
+int Run(Arguments const& a, Context& context) {
+    engine::BakeOptions const options = MakeOptions(a, context.GetCommon());
+    if (a.meshes.size() > 1 && a.pattern.find("{mesh}") == std::string::npos) {
+        throw Error(ErrorCode::BadOption, "-o: several meshes need {mesh} in the output's name");
+    }
+    if (a.maps.size() > 1 && a.pattern.find("{map}") == std::string::npos) {
+        context.GetJob().Warn("the output's name has no {map}: all maps go into one file with a layer each");
+    }
+    for (std::string const& path : a.meshes) {
+        auto const [scene, refiner] = context.Load(path);
+        Context::Mesh other;
+        if (!a.against.empty()) other = context.Load(a.against);
+        auto const report = engine::Bake(scene, *refiner, a.against.empty() ? nullptr : &other.scene, options,
+                                         context.GetJob());
+        AddToReport(context.GetReport(), report);
+    }
+    return kDone;
+}
+
+}  // namespace
+
+Verb AddBake(CLI::App& app) {
+    auto const a = std::make_shared<Arguments>();
+    CLI::App* const verb = app.add_subcommand("bake", "Bake maps of the limit surface into textures");
+    verb->add_option("MESH", a->meshes, "OBJ, PLY or OFF; several with {mesh} in the output's name")->required();
+    verb->add_option("-o,--output", a->pattern, "output path with {map}, {mesh}, <UDIM> or {udim}")->required();
+    verb->add_option("--maps", a->maps,
+                     "comma-separated: mean, gaussian, k1, k2, curvedness, shape-index, curvature, principal-direction, "
+                     "position, normal, displacement, stretch, primvar:NAME")
+        ->delimiter(',')
+        ->required();
+    verb->add_option("--size", a->size, "texels: N or WxH (default 2048)");
+    verb->add_option("--tiles", a->tiles, "UDIM tiles, e.g. 1001,1003-1005 (default all)")->delimiter(',');
+    verb->add_option("--samples", a->samples, "N x N samples per texel (default 1)")->check(CLI::Range(1, 16));
+    verb->add_option("--padding", a->padding, "texels grown round the charts (default 16)")->check(CLI::Range(0, 4096));
+    verb->add_flag("--half", a->isHalf, "16-bit floats (default 32-bit)");
+    verb->add_option("--compression", a->compression, "zip (default), zips, piz, rle, none or dwaa");
+    verb->add_flag("--mip", a->hasMips, "mip levels, for renderers");
+    verb->add_flag("--coverage", a->hasCoverage, "add a channel 'coverage'");
+    verb->add_flag("--preview", a->hasPreview, "also a PNG to look at");
+    verb->add_option("--encode", a->encode, "S,O: write value * S + O");
+    verb->add_option("--against", a->against, "the mesh that displacement leads to");
+    verb->add_flag("--vector", a->isVector, "displacement as a vector");
+    verb->add_option("--space", a->space, "object (default) or tangent, of vector displacement")
+        ->check(CLI::IsMember({"object", "tangent"}));
+    verb->add_option("--groups", a->groups, "only faces of these usemtl, g or o groups")->delimiter(',');
+    verb->add_flag("--skip-existing", a->skipExisting, "leave files of the same input, options and version alone");
+    verb->footer("Example:\n  limn bake scenes/spot/spot.obj -o 'out/spot.{map}.<UDIM>.exr' --maps mean,normal --size 2048 "
+                 "--preview");
+    return {verb, [a](Context& context) { return Run(*a, context); }};
+}
+
+}  // namespace limn::cli

@@ -1,0 +1,105 @@
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "engine/cli/cli.h"
+#include "engine/mesh_info.h"
+#include "engine/options_text.h"
+
+namespace limn::cli {
+
+namespace {
+
+nlohmann::json ToJson(engine::MeshInfo const& info, far_ext::ControlMesh const& cage) {
+    nlohmann::json bySize = nlohmann::json::object();
+    for (auto const& [size, count] : info.facesBySize) bySize[std::to_string(size)] = count;
+    nlohmann::json defects = nlohmann::json::array();
+    for (auto const& defect : info.defects) {
+        defects.push_back({{"kind", defect.kind}, {"element", defect.element}, {"line", defect.line}, {"message", defect.message}});
+    }
+    auto const& options = cage.options;
+    return {{"vertices", info.vertices},
+            {"edges", info.edges},
+            {"faces", info.faces},
+            {"faces_by_size", bySize},
+            {"components", info.components},
+            {"boundary_loops", info.boundaryLoops},
+            {"euler_characteristic", info.eulerCharacteristic},
+            {"genus", info.genus < 0 ? nlohmann::json() : nlohmann::json(info.genus)},
+            {"valence", {{"min", info.minValence}, {"max", info.maxValence}}},
+            {"creases", info.creases},
+            {"corners", info.corners},
+            {"holes", info.holes},
+            {"groups", info.groups},
+            {"uv",
+             {{"present", info.uv.present},
+              {"tiles", info.uv.tiles},
+              {"overlap_faces", info.uv.overlapFaces},
+              {"flipped_faces", info.uv.flippedFaces},
+              {"zero_area_faces", info.uv.zeroAreaFaces},
+              {"out_of_range_faces", info.uv.outOfRangeFaces}}},
+            {"options",
+             {{"scheme", engine::GetName(cage.scheme)},
+              {"boundary", engine::GetName(options.GetVtxBoundaryInterpolation())},
+              {"fvar", engine::GetName(options.GetFVarLinearInterpolation())},
+              {"creases", engine::GetName(options.GetCreasingMethod())},
+              {"triangles", engine::GetName(options.GetTriangleSubdivision())}}},
+            {"defects", defects}};
+}
+
+std::string ToText(engine::Scene const& scene, engine::MeshInfo const& info) {
+    std::string text = fmt::format("{}\n", scene.path);
+    auto const line = [&](char const* what, std::string const& value) { text += fmt::format("  {:<14} {}\n", what, value); };
+    std::string sizes;
+    for (auto const& [size, count] : info.facesBySize) {
+        char const* const name = size == 3 ? "triangles" : size == 4 ? "quads" : nullptr;
+        sizes += fmt::format("{}{} {}", sizes.empty() ? "" : ", ", count, name ? name : fmt::format("{}-gons", size));
+    }
+    line("topology", fmt::format("{} vertices, {} edges, {} faces ({})", info.vertices, info.edges, info.faces, sizes));
+    line("surface", fmt::format("{} component{}, {} boundary loop{}, Euler characteristic {}, genus {}", info.components,
+                                info.components == 1 ? "" : "s", info.boundaryLoops, info.boundaryLoops == 1 ? "" : "s",
+                                info.eulerCharacteristic, info.genus < 0 ? "undefined" : std::to_string(info.genus)));
+    line("valence", fmt::format("{} to {}", info.minValence, info.maxValence));
+    line("tags", fmt::format("{} crease edges, {} corners, {} holes", info.creases, info.corners, info.holes));
+    line("options", engine::DescribeSubdivision(scene.cage));
+    if (!info.groups.empty()) line("groups", fmt::format("{}", fmt::join(info.groups, ", ")));
+    std::string primvars;
+    for (auto const& primvar : scene.primvars) primvars += (primvars.empty() ? "" : ", ") + primvar.name;
+    if (!primvars.empty()) line("primvars", primvars);
+    if (!info.uv.present) {
+        line("UVs", "none");
+    } else {
+        line("UVs", fmt::format("tiles {}; faces: {} overlapping, {} flipped, {} without area, {} out of range",
+                                fmt::join(info.uv.tiles, ", "), info.uv.overlapFaces, info.uv.flippedFaces,
+                                info.uv.zeroAreaFaces, info.uv.outOfRangeFaces));
+    }
+    for (auto const& defect : info.defects) line("defect", defect.message);
+    return text;
+}
+
+}  // namespace
+
+Verb AddInfo(CLI::App& app) {
+    struct Arguments {
+        std::string mesh;
+        bool asJson = false;
+    };
+    auto const a = std::make_shared<Arguments>();
+    CLI::App* const verb = app.add_subcommand("info", "Tell what limn understood of a mesh");
+    verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();
+    verb->add_flag("--json", a->asJson, "one JSON object instead of text");
+    verb->footer("Example:\n  limn info scenes/spot/spot.obj --json");
+    return {verb, [a](Context& context) {
+                context.KeepStdoutForData(true);
+                auto const [scene, refiner] = context.Load(a->mesh, Context::Defects::Keep);
+                auto const info = engine::DescribeMesh(scene, refiner->GetLevel(0));
+                auto json = ToJson(info, scene.cage);
+                std::string const text = a->asJson ? json.dump(2) + "\n" : ToText(scene, info);
+                std::fwrite(text.data(), 1, text.size(), stdout);
+                context.GetReport().update(json);
+                return kDone;
+            }};
+}
+
+}  // namespace limn::cli

@@ -1,0 +1,92 @@
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "engine/cli/cli.h"
+#include "engine/io/file.h"
+#include "engine/io/mesh_reader.h"
+#include "engine/mesh_info.h"
+#include "engine/options_text.h"
+#include "far_ext/error.h"
+
+namespace limn::cli {
+
+using engine::Job;
+using engine::Scene;
+
+std::string GetVersion() { return LIMN_VERSION " (OpenSubdiv 3.5)"; }
+
+namespace {
+
+Job::Progress ChooseProgress(CommonOptions const& common) {
+    if (common.isQuiet || common.progress == "none") return Job::Progress::None;
+    if (common.progress == "bar") return Job::Progress::Bar;
+    if (common.progress == "lines") return Job::Progress::Lines;
+    return ::isatty(STDERR_FILENO) ? Job::Progress::Bar : Job::Progress::Lines;
+}
+
+void ApplyOptions(CommonOptions const& common, Scene& scene) {
+    auto& cage = scene.cage;
+    if (common.scheme) cage.scheme = engine::ParseScheme(*common.scheme);
+    if (common.boundary) cage.options.SetVtxBoundaryInterpolation(engine::ParseBoundary(*common.boundary));
+    if (common.fvar) cage.options.SetFVarLinearInterpolation(engine::ParseFVar(*common.fvar));
+    if (common.creases) cage.options.SetCreasingMethod(engine::ParseCreases(*common.creases));
+    if (common.triangles) cage.options.SetTriangleSubdivision(engine::ParseTriangles(*common.triangles));
+}
+
+}  // namespace
+
+Context::Context(CommonOptions const& common, std::string command, std::vector<std::string> arguments)
+    : _common(common), _job(ChooseProgress(common), common.isQuiet), _start(std::chrono::steady_clock::now()) {
+    _report["limn_version"] = GetVersion();
+    _report["command"] = command;
+    _report["options"] = std::move(arguments);
+    _report["inputs"] = nlohmann::json::array();
+}
+
+Context::Mesh Context::Load(std::string const& path, Defects defects) {
+    Scene scene = engine::ReadMesh(path);
+    ApplyOptions(_common, scene);
+    for (std::string const& warning : scene.warnings) _job.Warn(warning);
+    std::unique_ptr<Far::TopologyRefiner> refiner;
+    try {
+        far_ext::Validate(scene.cage);
+        refiner = far_ext::CreateRefiner(scene.cage);
+    } catch (Error const& error) {
+        throw Error(error.GetCode(), fmt::format("{}: {}", path, error.what()));
+    }
+    if (defects == Defects::Warn) {
+        for (auto const& defect : engine::FindDefects(scene, refiner->GetLevel(0))) {
+            _job.Warn(fmt::format("{}: {}", path, defect.message));
+        }
+    }
+    _report["inputs"].push_back({{"path", path},
+                                 {"sha256", scene.sha256},
+                                 {"vertices", scene.cage.numVertices},
+                                 {"faces", scene.cage.GetNumFaces()},
+                                 {"subdivision", engine::DescribeSubdivision(scene.cage)}});
+    return {std::move(scene), std::move(refiner)};
+}
+
+void Context::KeepStdoutForData(bool writesToStdout) const {
+    if (writesToStdout && _common.reportPath == "-") {
+        throw Error(ErrorCode::BadOption, "--report -: stdout already carries the data; name a file");
+    }
+}
+
+void Context::WriteReport() {
+    if (_common.reportPath.empty()) return;
+    _report["warnings"] = _job.GetWarnings();
+    std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - _start;
+    _report["seconds"] = std::round(elapsed.count() * 1e3) / 1e3;
+    std::string const text = _report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    if (_common.reportPath == "-") {
+        std::fwrite(text.data(), 1, text.size(), stdout);
+    } else {
+        engine::WriteFileAtomically(_common.reportPath, text);
+    }
+}
+
+}  // namespace limn::cli

@@ -1,0 +1,115 @@
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/task_arena.h>
+
+#include "engine/cli/cli.h"
+#include "far_ext/error.h"
+
+namespace {
+
+using limn::Error;
+using limn::ErrorCode;
+using limn::cli::CommonOptions;
+
+void AddCommonOptions(CLI::App& app, CommonOptions& o) {
+    auto const group = [&](CLI::Option* option) { option->group("Options every verb shares"); };
+    group(app.add_option("--scheme", o.scheme, "catmark, loop or bilinear (default catmark)"));
+    group(app.add_option("--boundary", o.boundary, "edge-and-corner, edge-only or none (default: the file's tag)"));
+    group(app.add_option("--fvar", o.fvar,
+                         "none, corners-only, corners-plus1, corners-plus2, boundaries or all (default: the file's tag, "
+                         "else corners-plus1)"));
+    group(app.add_option("--creases", o.creases, "uniform or chaikin (default: the file's tag)"));
+    group(app.add_option("--triangles", o.triangles, "catmark or smooth (default: the file's tag)"));
+    group(app.add_option("--orientation", o.orientation, "right (default): faces are counter-clockwise from outside; left")
+              ->check(CLI::IsMember({"right", "left"})));
+    group(app.add_option("--threads", o.numThreads, "default: LIMN_THREADS, OPENIMAGEIO_THREADS, CUE_THREADS, else all cores")
+              ->check(CLI::Range(1, 1024)));
+    group(app.add_option("--report", o.reportPath, "write a JSON report of the run (- for stdout)"));
+    group(app.add_option("--precision", o.precision, "float (default) or double: digits of output")
+              ->check(CLI::IsMember({"float", "double"})));
+    group(app.add_flag("--quiet", o.isQuiet, "no progress, no warnings"));
+    group(app.add_flag("--verbose", o.isVerbose, "say more"));
+    group(app.add_option("--progress", o.progress, "auto (default), bar, lines or none")
+              ->check(CLI::IsMember({"auto", "bar", "lines", "none"})));
+}
+
+int ChooseThreads(CommonOptions const& options) {
+    if (options.numThreads > 0) return options.numThreads;
+    for (char const* name : {"LIMN_THREADS", "OPENIMAGEIO_THREADS", "CUE_THREADS"}) {
+        char const* const value = std::getenv(name);
+        int const threads = value ? std::atoi(value) : 0;
+        if (threads > 0 && threads <= 1024) return threads;
+    }
+    return tbb::info::default_concurrency();
+}
+
+int ToExitStatus(ErrorCode code) {
+    switch (code) {
+        case ErrorCode::BadOption: return 2;
+        case ErrorCode::BadMesh:
+        case ErrorCode::Unsupported:
+        case ErrorCode::TooLarge: return 3;
+        case ErrorCode::Io: return 5;
+    }
+    return 1;
+}
+
+int Fail(int status, std::string message) {
+    for (char& c : message) {
+        if (c == '\n' || c == '\r') c = ' ';  // an error is one line
+    }
+    fmt::print(stderr, "limn: error: {}\n", message);
+    return status;
+}
+
+int Run(limn::cli::Verb const& verb, CommonOptions const& common, std::vector<std::string> const& arguments) {
+    int const numThreads = ChooseThreads(common);
+    tbb::global_control const limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(numThreads));
+    tbb::task_arena arena(numThreads);
+    limn::cli::Context context(common, verb.app->get_name(), arguments);
+    int const status = arena.execute([&] { return verb.run(context); });
+    context.WriteReport();
+    return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app("limn bakes the true limit of subdivision surfaces.", "limn");
+    app.set_version_flag("--version", limn::cli::GetVersion());
+    app.require_subcommand(1);
+    app.get_formatter()->column_width(34);
+    CommonOptions common;
+    std::vector<limn::cli::Verb> const verbs{limn::cli::AddInfo(app), limn::cli::AddEval(app), limn::cli::AddBake(app),
+                                             limn::cli::AddRefine(app)};
+    for (auto const& verb : verbs) AddCommonOptions(*verb.app, common);
+    try {
+        app.parse(argc, argv);
+    } catch (CLI::Success const& asked) {  // help, version
+        return app.exit(asked);
+    } catch (CLI::ParseError const& error) {
+        return Fail(2, fmt::format("{} (limn VERB --help tells more)", error.what()));
+    }
+
+    limn::engine::InstallSignalHandlers();
+    try {
+        std::vector<std::string> const arguments(argv + 1, argv + argc);
+        for (auto const& verb : verbs) {
+            if (verb.app->parsed()) return Run(verb, common, arguments);
+        }
+        return 2;
+    } catch (limn::engine::Interrupted const& interrupt) {
+        return Fail(128 + interrupt.signal, "interrupted; nothing half-written is left");
+    } catch (Error const& error) {
+        return Fail(ToExitStatus(error.GetCode()), error.what());
+    } catch (std::bad_alloc const&) {
+        return Fail(1, "out of memory");
+    } catch (std::exception const& error) {
+        return Fail(1, fmt::format("internal: {}", error.what()));
+    }
+}

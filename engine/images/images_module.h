@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+
+namespace limn::engine {
+
+/// What limn uses OpenImageIO for. It takes 0.2 s to load, so it sits in a module of its own
+/// (limn_images.so) that is loaded when a run first asks for it.
+struct ImagesModule {
+    /// Writes 8-bit RGB as PNG. On failure returns false and puts the reason into `reason`.
+    bool (*writePng)(char const* path, int width, int height, unsigned char const* rgb, char* reason,
+                     size_t reasonSize);
+};
+
+/// \throws Error  Io if the module is missing beside the program and in its library folder
+ImagesModule const& LoadImagesModule();
+
+}  // namespace limn::engine
+
+/// The module's one symbol.
+extern "C" limn::engine::ImagesModule const* limn_images_module();

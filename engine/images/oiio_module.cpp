@@ -1,0 +1,31 @@
+#include <cstdio>
+#include <memory>
+
+#include <OpenImageIO/imageio.h>
+
+#include "engine/images/images_module.h"
+
+namespace {
+
+bool Fail(std::string const& why, char* reason, size_t reasonSize) {
+    std::snprintf(reason, reasonSize, "%s", why.c_str());
+    return false;
+}
+
+/// The file's name ends in .tmp, so the format is named rather than guessed.
+bool WritePng(char const* path, int width, int height, unsigned char const* rgb, char* reason, size_t reasonSize) {
+    auto const output = OIIO::ImageOutput::create("png");
+    if (!output) return Fail(OIIO::geterror(), reason, reasonSize);
+    OIIO::ImageSpec const spec(width, height, 3, OIIO::TypeDesc::UINT8);
+    if (!output->open(path, spec) || !output->write_image(OIIO::TypeDesc::UINT8, rgb) || !output->close()) {
+        return Fail(output->geterror(), reason, reasonSize);
+    }
+    return true;
+}
+
+}  // namespace
+
+extern "C" limn::engine::ImagesModule const* limn_images_module() {
+    static limn::engine::ImagesModule const module{WritePng};
+    return &module;
+}

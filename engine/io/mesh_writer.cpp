@@ -1,0 +1,177 @@
+#include "engine/io/mesh_writer.h"
+
+#include <bit>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "engine/io/file.h"
+#include "far_ext/error.h"
+
+namespace limn::engine {
+
+namespace {
+
+/// The shortest digits that read back as the same number.
+void AppendNumber(fmt::memory_buffer& to, double value, bool isDouble) {
+    if (isDouble) fmt::format_to(std::back_inserter(to), "{}", value);
+    else fmt::format_to(std::back_inserter(to), "{}", static_cast<float>(value));
+}
+
+void Append(fmt::memory_buffer& to, std::string_view text) { to.append(text.data(), text.data() + text.size()); }
+
+class ObjText {
+public:
+    ObjText(Scene const& scene, bool isDouble) : _scene(scene), _isDouble(isDouble) {}
+
+    std::string Make() {
+        AppendRows("v", _scene.positions, 3);
+        AppendRows("vt", _scene.uvs, 2);
+        AppendFaces();
+        AppendTags();
+        return fmt::to_string(_text);
+    }
+
+private:
+    void AppendRows(char const* keyword, std::vector<double> const& values, size_t length) {
+        for (size_t i = 0; i < values.size(); i += length) {
+            Append(_text, keyword);
+            for (size_t c = 0; c < length; ++c) {
+                _text.push_back(' ');
+                AppendNumber(_text, values[i + c], _isDouble);
+            }
+            _text.push_back('\n');
+        }
+    }
+
+    void AppendFaces() {
+        auto const& cage = _scene.cage;
+        Index current[3] = {-1, -1, -1};
+        static char const* const kKeywords[3] = {"usemtl", "g", "o"};
+        size_t corner = 0;
+        for (Index face = 0; face < cage.GetNumFaces(); ++face) {
+            for (int kind : {2, 1, 0}) {
+                FaceGroups const& groups = _scene.groups[kind];
+                if (groups.faceGroup.empty() || groups.faceGroup[face] == current[kind]) continue;
+                current[kind] = groups.faceGroup[face];
+                fmt::format_to(std::back_inserter(_text), "{} {}\n", kKeywords[kind],
+                               current[kind] < 0 ? "" : groups.names[current[kind]]);
+            }
+            _text.push_back('f');
+            for (int i = 0; i < cage.faceSizes[face]; ++i, ++corner) {
+                fmt::format_to(std::back_inserter(_text), " {}", cage.faceVertices[corner] + 1);
+                if (_scene.HasUVs()) {
+                    fmt::format_to(std::back_inserter(_text), "/{}", cage.fvarChannels[0].valueIndices[corner] + 1);
+                }
+            }
+            _text.push_back('\n');
+        }
+    }
+
+    void AppendTags() {
+        auto const& cage = _scene.cage;
+        auto const line = [&]<class... T>(fmt::format_string<T...> format, T&&... arguments) {
+            fmt::format_to(std::back_inserter(_text), format, std::forward<T>(arguments)...);
+        };
+        for (size_t i = 0; i < cage.creaseSharpness.size(); ++i) {
+            line("t crease 2/1/0 {} {} {}\n", cage.creaseVertexPairs[2 * i], cage.creaseVertexPairs[2 * i + 1],
+                 cage.creaseSharpness[i]);
+        }
+        for (size_t i = 0; i < cage.cornerSharpness.size(); ++i) {
+            line("t corner 1/1/0 {} {}\n", cage.cornerVertices[i], cage.cornerSharpness[i]);
+        }
+        for (Index hole : cage.holes) line("t hole 1/0/0 {}\n", hole);
+        constexpr int kBoundaryTag[] = {0, 2, 1};  // none, edge only, edge and corner
+        line("t interpolateboundary 1/0/0 {}\n", kBoundaryTag[cage.options.GetVtxBoundaryInterpolation()]);
+        if (_scene.HasUVs()) {
+            line("t facevaryinginterpolateboundary 1/0/0 {}\n",
+                 static_cast<int>(cage.options.GetFVarLinearInterpolation()));
+        }
+        if (cage.options.GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN) line("t creasemethod 0/0/1 chaikin\n");
+        if (cage.options.GetTriangleSubdivision() == Sdc::Options::TRI_SUB_SMOOTH) line("t smoothtriangles 0/0/1 smooth\n");
+    }
+
+    Scene const& _scene;
+    bool _isDouble;
+    fmt::memory_buffer _text;
+};
+
+class PlyBytes {
+public:
+    PlyBytes(Scene const& scene, bool isDouble) : _scene(scene), _isDouble(isDouble) {}
+
+    std::string Make() {
+        AppendHeader();
+        for (Index vertex = 0; vertex < _scene.cage.numVertices; ++vertex) {
+            for (size_t c = 0; c < 3; ++c) AppendReal(_scene.positions[3 * static_cast<size_t>(vertex) + c]);
+            for (Primvar const& primvar : _scene.primvars) {
+                size_t const n = static_cast<size_t>(primvar.numChannels);
+                for (size_t c = 0; c < n; ++c) AppendRaw(primvar.values[static_cast<size_t>(vertex) * n + c]);
+            }
+        }
+        size_t corner = 0;
+        for (int size : _scene.cage.faceSizes) {
+            AppendRaw(static_cast<int32_t>(size));
+            for (int i = 0; i < size; ++i) AppendRaw(static_cast<int32_t>(_scene.cage.faceVertices[corner + i]));
+            if (_scene.HasUVs()) {
+                AppendRaw(static_cast<int32_t>(2 * size));
+                for (int i = 0; i < size; ++i) {
+                    Index const value = _scene.cage.fvarChannels[0].valueIndices[corner + i];
+                    AppendReal(_scene.uvs[2 * static_cast<size_t>(value)]);
+                    AppendReal(_scene.uvs[2 * static_cast<size_t>(value) + 1]);
+                }
+            }
+            corner += static_cast<size_t>(size);
+        }
+        return std::move(_bytes);
+    }
+
+private:
+    void AppendHeader() {
+        char const* const real = _isDouble ? "double" : "float";
+        auto const line = [&]<class... T>(fmt::format_string<T...> format, T&&... arguments) {
+            fmt::format_to(std::back_inserter(_bytes), format, std::forward<T>(arguments)...);
+        };
+        line("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", _scene.cage.numVertices);
+        for (char const* axis : {"x", "y", "z"}) line("property {} {}\n", real, axis);
+        for (Primvar const& primvar : _scene.primvars) {
+            static char const* const kColours[] = {"red", "green", "blue", "alpha"};
+            for (int c = 0; c < primvar.numChannels; ++c) {
+                line("property float {}\n", primvar.numChannels == 1 ? primvar.name.c_str() : kColours[c]);
+            }
+        }
+        line("element face {}\nproperty list int int vertex_indices\n", _scene.cage.GetNumFaces());
+        if (_scene.HasUVs()) line("property list int {} texcoord\n", real);
+        line("end_header\n");
+    }
+
+    template <class T>
+    void AppendRaw(T value) {
+        static_assert(std::endian::native == std::endian::little);
+        _bytes.append(reinterpret_cast<char const*>(&value), sizeof value);
+    }
+    void AppendReal(double value) { _isDouble ? AppendRaw(value) : AppendRaw(static_cast<float>(value)); }
+
+    Scene const& _scene;
+    bool _isDouble;
+    std::string _bytes;
+};
+
+}  // namespace
+
+void WriteMesh(std::string const& path, Scene const& scene, bool isDouble, std::vector<std::string>* warnings) {
+    if (path.ends_with(".obj")) {
+        if (warnings && !scene.primvars.empty()) warnings->push_back(path + ": OBJ holds no primvars; they are left out");
+        WriteFileAtomically(path, ObjText(scene, isDouble).Make());
+    } else if (path.ends_with(".ply")) {
+        auto const& cage = scene.cage;
+        if (warnings && (!cage.creaseSharpness.empty() || !cage.cornerSharpness.empty() || !cage.holes.empty())) {
+            warnings->push_back(path + ": PLY holds no creases, corners or holes; they are left out");
+        }
+        WriteFileAtomically(path, PlyBytes(scene, isDouble).Make());
+    } else {
+        throw Error(ErrorCode::BadOption, fmt::format("-o '{}': a mesh is written as .obj or .ply", path));
+    }
+}
+
+}  // namespace limn::engine

@@ -1,0 +1,193 @@
+#include "engine/refine.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <opensubdiv/far/primvarRefiner.h>
+
+#include "engine/job.h"
+#include "eval/surface_sample.h"
+#include "far_ext/error.h"
+#include "far_ext/refiner.h"
+
+namespace limn::engine {
+
+namespace {
+
+using Level = Far::TopologyLevel;
+
+/// Rows of doubles of a length known at run time, as Far's refiner reads and writes them.
+class Rows {
+public:
+    struct Row {
+        double* data;
+        int length;
+        void Clear() { std::fill_n(data, length, 0.0); }
+        void AddWithWeight(Row const& other, double weight) {
+            for (int c = 0; c < length; ++c) data[c] += weight * other.data[c];
+        }
+    };
+
+    Rows(std::vector<double>& values, int length) : _values(values), _length(length) {}
+    Row operator[](Index i) const { return {&_values[static_cast<size_t>(i) * _length], _length}; }
+
+private:
+    std::vector<double>& _values;
+    int _length;
+};
+
+/// Far asks for references to rows; a temporary proxy serves.
+struct RowsView {
+    Rows rows;
+    mutable Rows::Row current{};
+    Rows::Row& operator[](Index i) const {
+        current = rows[i];
+        return current;
+    }
+};
+
+std::vector<double> RefineVertexValues(Far::TopologyRefiner const& refiner, std::vector<double> values, int length) {
+    Far::PrimvarRefinerReal<double> const primvars(refiner);
+    for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
+        CheckInterrupted();
+        std::vector<double> fine(static_cast<size_t>(refiner.GetLevel(level).GetNumVertices()) * length);
+        RowsView const from{{values, length}};
+        RowsView to{{fine, length}};
+        primvars.Interpolate(level, from, to);
+        values = std::move(fine);
+    }
+    return values;
+}
+
+std::vector<double> RefineUVs(Far::TopologyRefiner const& refiner, std::vector<double> values) {
+    Far::PrimvarRefinerReal<double> const primvars(refiner);
+    for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
+        std::vector<double> fine(static_cast<size_t>(refiner.GetLevel(level).GetNumFVarValues(0)) * 2);
+        RowsView const from{{values, 2}};
+        RowsView to{{fine, 2}};
+        primvars.InterpolateFaceVarying(level, from, to, 0);
+        values = std::move(fine);
+    }
+    return values;
+}
+
+/// The base face of every face of the last level.
+std::vector<Index> FindBaseFaces(Far::TopologyRefiner const& refiner) {
+    int const last = refiner.GetMaxLevel();
+    std::vector<Index> base(static_cast<size_t>(refiner.GetLevel(last).GetNumFaces()));
+    for (Index face = 0; face < static_cast<Index>(base.size()); ++face) {
+        Index at = face;
+        for (int level = last; level > 0; --level) at = refiner.GetLevel(level).GetFaceParentFace(at);
+        base[face] = at;
+    }
+    return base;
+}
+
+/// Tags as the last level has them. Boundaries are sharp by rule and need none.
+void CopyTags(Level const& level, Sdc::Options::VtxBoundaryInterpolation boundary, far_ext::ControlMesh& cage) {
+    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+        float const sharpness = level.GetEdgeSharpness(edge);
+        if (sharpness <= 0.0f || level.IsEdgeBoundary(edge) || level.IsEdgeNonManifold(edge)) continue;
+        auto const ends = level.GetEdgeVertices(edge);
+        cage.creaseVertexPairs.insert(cage.creaseVertexPairs.end(), {ends[0], ends[1]});
+        cage.creaseSharpness.push_back(sharpness);
+    }
+    for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
+        float const sharpness = level.GetVertexSharpness(vertex);
+        bool const isByRule = level.IsVertexNonManifold(vertex) ||
+                              (boundary == Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER && level.IsVertexCorner(vertex));
+        if (sharpness <= 0.0f || isByRule) continue;
+        cage.cornerVertices.push_back(vertex);
+        cage.cornerSharpness.push_back(sharpness);
+    }
+    for (Index face = 0; face < level.GetNumFaces(); ++face) {
+        if (level.IsFaceHole(face)) cage.holes.push_back(face);
+    }
+}
+
+/// Moves refined vertices to the limit: each vertex is a corner of one of its faces, evaluated there.
+/// Vertices without a face that has a limit stay.
+void MoveToLimit(Scene& fine) {
+    auto const refiner = far_ext::CreateRefiner(fine.cage);
+    eval::LimitSurface const surface(*refiner);
+    std::vector<double> const control = fine.positions;
+    eval::FaceTree tree(surface, control, 3);
+    std::vector<char> isDone(static_cast<size_t>(fine.cage.numVertices), 0);
+    Level const level = refiner->GetLevel(0);
+    for (Index face = 0; face < surface.GetNumFaces(); ++face) {
+        if (!surface.HasLimit(face)) continue;
+        CheckInterrupted();
+        bool isBound = false;
+        auto const vertices = level.GetFaceVertices(face);
+        for (int corner = 0; corner < vertices.size(); ++corner) {
+            if (isDone[vertices[corner]]) continue;
+            if (!isBound) tree.Bind(face);
+            isBound = true;
+            constexpr double kQuad[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+            constexpr double kTriangle[3][2] = {{0, 0}, {1, 0}, {0, 1}};
+            bool const hasOneDomain = surface.GetNumDomains(face) == 1;
+            double const* const st = !hasOneDomain ? kQuad[0] : surface.IsLoop() ? kTriangle[corner] : kQuad[corner];
+            for (int c = 0; c < 3; ++c) {
+                fine.positions[3 * static_cast<size_t>(vertices[corner]) + static_cast<size_t>(c)] =
+                    eval::EvaluateChannel(tree, hasOneDomain ? 0 : corner, st[0], st[1], c);
+            }
+            isDone[vertices[corner]] = 1;
+        }
+    }
+}
+
+}  // namespace
+
+Scene RefineUniformly(Scene const& scene, int levels, bool toLimit) {
+    if (levels < 0 || levels > 10) {
+        throw Error(ErrorCode::BadOption, fmt::format("--levels: {} is not from 0 to 10", levels));
+    }
+    double const corners = static_cast<double>(scene.cage.faceVertices.size()) * std::pow(4.0, levels);
+    if (corners > 2e9) {
+        throw Error(ErrorCode::TooLarge, fmt::format("{}: {} levels would make {:.1e} face corners; at most 2e9 can be "
+                                                     "indexed",
+                                                     scene.path, levels, corners));
+    }
+    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    Far::TopologyRefiner::UniformOptions uniform(levels);
+    uniform.fullTopologyInLastLevel = true;
+    refiner->RefineUniform(uniform);
+    Level const last = refiner->GetLevel(levels);
+
+    Scene fine;
+    fine.path = scene.path;
+    fine.name = scene.name;
+    fine.cage.scheme = scene.cage.scheme;
+    fine.cage.options = scene.cage.options;
+    fine.cage.numVertices = last.GetNumVertices();
+    for (Index face = 0; face < last.GetNumFaces(); ++face) {
+        auto const vertices = last.GetFaceVertices(face);
+        fine.cage.faceSizes.push_back(vertices.size());
+        fine.cage.faceVertices.insert(fine.cage.faceVertices.end(), vertices.begin(), vertices.end());
+    }
+    CopyTags(last, scene.cage.options.GetVtxBoundaryInterpolation(), fine.cage);
+    fine.positions = RefineVertexValues(*refiner, scene.positions, 3);
+    if (scene.HasUVs()) {
+        fine.uvs = RefineUVs(*refiner, scene.uvs);
+        far_ext::FVarChannel channel{last.GetNumFVarValues(0), {}};
+        for (Index face = 0; face < last.GetNumFaces(); ++face) {
+            auto const values = last.GetFaceFVarValues(face, 0);
+            channel.valueIndices.insert(channel.valueIndices.end(), values.begin(), values.end());
+        }
+        fine.cage.fvarChannels.push_back(std::move(channel));
+    }
+    for (Primvar const& primvar : scene.primvars) {
+        auto const values = RefineVertexValues(*refiner, {primvar.values.begin(), primvar.values.end()}, primvar.numChannels);
+        fine.primvars.push_back({primvar.name, primvar.numChannels, {values.begin(), values.end()}});
+    }
+    std::vector<Index> const base = FindBaseFaces(*refiner);
+    for (size_t kind = 0; kind < 3; ++kind) {
+        fine.groups[kind].names = scene.groups[kind].names;
+        if (scene.groups[kind].faceGroup.empty()) continue;
+        for (Index face : base) fine.groups[kind].faceGroup.push_back(scene.groups[kind].faceGroup[face]);
+    }
+    if (toLimit) MoveToLimit(fine);
+    return fine;
+}
+
+}  // namespace limn::engine
