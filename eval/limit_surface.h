@@ -63,9 +63,9 @@ struct PatchPoint {
 
 /// A run of samples that lie in one polynomial piece.
 struct PatchRun {
-    PatchPoint patch;           ///< x and y are not set
+    PatchPoint patch;              ///< x and y are not set
     std::span<int const> samples;  ///< indices into the samples given
-    std::span<double const> x, y;  ///< about the piece's centre, one per entry of `samples`
+    std::span<double const> s, t;  ///< in the piece's own domain, one per entry of `samples`
 };
 
 /// The limit surface of one face at a time, refined as deep as the samples ask: a quadtree of
@@ -156,7 +156,7 @@ private:
     std::vector<double> _values;  // an arena, reset by Bind; entry 0 is unused
     std::vector<Index> _points;
     // scratch of ForEachPiece
-    std::vector<int> _samples, _sampleBuffer;
+    std::vector<int> _identity, _samples, _sampleBuffer;
     std::vector<double> _s, _t, _sBuffer, _tBuffer;
     std::vector<unsigned char> _childOfSample;
 };
@@ -164,27 +164,25 @@ private:
 template <class Visit, class VisitNear>
 void FaceTree::ForEachPiece(int domain, std::span<double const> s, std::span<double const> t,
                             int maxDepth, Visit visit, VisitNear visitNear) {
-    _samples.resize(s.size());
-    for (size_t i = 0; i < s.size(); ++i) _samples[i] = static_cast<int>(i);
+    for (size_t i = _identity.size(); i < s.size(); ++i) _identity.push_back(static_cast<int>(i));
+    std::span<int const> const all(_identity.data(), s.size());
+    int const root = GetRoot(domain);
+    if (IsLeaf(root)) return visit(PatchRun{GetLeaf(root), all, s, t});
+    _samples.assign(all.begin(), all.end());
     _s.assign(s.begin(), s.end());
     _t.assign(t.begin(), t.end());
     _sampleBuffer.resize(s.size());
     _sBuffer.resize(s.size());
     _tBuffer.resize(s.size());
     _childOfSample.resize(s.size());
-    Split(GetRoot(domain), _samples, _s, _t, maxDepth, visit, visitNear);
+    Split(root, _samples, _s, _t, maxDepth, visit, visitNear);
 }
 
 template <class Visit, class VisitNear>
 void FaceTree::Split(int node, std::span<int> samples, std::span<double> s, std::span<double> t,
                      int maxDepth, Visit& visit, VisitNear& visitNear) {
     if (samples.empty()) return;
-    if (IsLeaf(node)) {
-        for (double& x : s) x -= _centre;
-        for (double& y : t) y -= _centre;
-        visit(PatchRun{GetLeaf(node), samples, s, t});
-        return;
-    }
+    if (IsLeaf(node)) return visit(PatchRun{GetLeaf(node), samples, s, t});
     if (_nodes[node].depth >= maxDepth) {
         for (int sample : samples) visitNear(sample);
         return;

@@ -46,27 +46,25 @@ struct SurfaceBatch {
 /// contraction or library calls, and chosen once at start.
 void EvaluateSurface(SurfaceBatch const& batch, Quantity quantity, bool isTriangle);
 
-/// One texture-space Newton problem per lane: find (s,t) with uv(s,t) = target.
+/// One texture-space Newton problem per lane: find (x, y) with map(x, y) = target.
 struct InversionBatch {
     double const* coefficients;  ///< [2][16] (Loop: 15 used) in texels about a local origin
     double const* targetX;       ///< texels about the same origin
     double const* targetY;
-    double* x;  ///< in: start, out: solution, about the piece's centre
+    double startX, startY;       ///< where the first guess expands the map to second order
+    double reach;                ///< guesses are kept this near to the start
+    double low, high;            ///< iterates are kept in this range
+    double* x;                   ///< out: about the piece's centre
     double* y;
-    double* residual;  ///< out: distance in texels at the solution returned
-    int count;         ///< arrays are padded to the next multiple of kInversionLanes
-    double low, high;  ///< iterates are kept in this range of x and y
+    double* residual;            ///< out: distance in texels, or a bound of it below 1e-5
+    int count;                   ///< arrays are padded to the next multiple of kInversionLanes
     int maxSteps;
 };
 
 inline constexpr int kInversionLanes = 8;
 
-/// Newton's method in double on all lanes until every lane is below `1e-7` texel or maxSteps.
+/// Newton's method in double on all lanes, from a guess by the map's second-order expansion. A lane
+/// is done when its step starts below 1e-3 texel: convergence is quadratic, so it ends below 1e-5.
 void InvertTextureMap(InversionBatch const& batch, bool isTriangle);
-
-/// Names and selection of the compiled instruction sets, for tests and `--verbose`: "sse2", "avx2",
-/// "avx512". LIMN_SIMD in the environment chooses one the CPU has.
-char const* GetSurfaceKernelName();
-bool SelectSurfaceKernel(char const* name);
 
 }  // namespace limn::eval

@@ -33,9 +33,10 @@ void SurfaceSampler::LoadCoefficients(PatchPoint const& patch) {
 
 void SurfaceSampler::EvaluateBlock(PatchRun const& run, size_t first, size_t count, int domain,
                                    std::span<double const> s, std::span<double const> t) {
+    double const centre = _tree.GetCentre();
     for (size_t i = 0; i < count; ++i) {
-        _x[i] = static_cast<float>(run.x[first + i]);
-        _y[i] = static_cast<float>(run.y[first + i]);
+        _x[i] = static_cast<float>(run.s[first + i] - centre);
+        _y[i] = static_cast<float>(run.t[first + i] - centre);
     }
     for (size_t i = count; i < (count + kSurfaceLanes - 1) / kSurfaceLanes * kSurfaceLanes; ++i) {
         _x[i] = _x[count - 1];

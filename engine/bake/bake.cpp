@@ -229,7 +229,7 @@ void TileJob::Run() {
     int const halo = (_options.padding + Band::kRows - 1) / Band::kRows;
     bool const needsRows = _options.hasMips || _options.hasPreview;
 
-    using Window = std::vector<std::shared_ptr<Band const>>;
+    using Window = std::vector<std::shared_ptr<Band>>;
     struct Work {  // a band with the neighbours its padding reads; `at` is its place among them
         Window window;
         size_t at = 0;
@@ -245,15 +245,15 @@ void TileJob::Run() {
                                         if (next == numBands + halo) control.stop();
                                         return next++;
                                     }) &
-            tbb::make_filter<int, std::shared_ptr<Band const>>(
+            tbb::make_filter<int, std::shared_ptr<Band>>(
                 tbb::filter_mode::parallel,
-                [&](int band) -> std::shared_ptr<Band const> {
+                [&](int band) -> std::shared_ptr<Band> {
                     if (band >= numBands) return nullptr;
                     return _baker.MakeBand(band, grid, bins[band]);
                 }) &
-            tbb::make_filter<std::shared_ptr<Band const>, Work>(
+            tbb::make_filter<std::shared_ptr<Band>, Work>(
                 tbb::filter_mode::serial_in_order,
-                [&](std::shared_ptr<Band const> band) {
+                [&](std::shared_ptr<Band> band) {
                     if (band) recent.push_back(std::move(band));
                     Work work;
                     int const newest = recent.back()->index;

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "engine/bake/pixel_kernel.h"
 #include "far_ext/error.h"
 #include "far_ext/refiner.h"
 
@@ -170,6 +172,7 @@ std::unique_ptr<Band> BandBaker::MakeBand(int index, TileGrid grid, std::vector<
     } else {
         Supersample(worker, grid, faces, *band);
     }
+    FindRange(*band);
     size_t covered = 0, overlaps = 0, failures = 0;
     for (size_t i = 0; i < numTexels; ++i) {
         covered += band->isCovered[i];
@@ -180,6 +183,16 @@ std::unique_ptr<Band> BandBaker::MakeBand(int index, TileGrid grid, std::vector<
     _overlaps += overlaps;
     _newtonFailures += failures;
     return band;
+}
+
+void BandBaker::FindRange(Band& band) {
+    size_t const numTexels = band.GetNumTexels(), numPlanes = band.planes.size() / numTexels;
+    band.low.assign(numPlanes, std::numeric_limits<float>::infinity());
+    band.high.assign(numPlanes, -std::numeric_limits<float>::infinity());
+    for (size_t plane = 0; plane < numPlanes; ++plane) {
+        engine::FindRange(&band.planes[plane * numTexels], band.isCovered.data(), numTexels, &band.low[plane],
+                          &band.high[plane]);
+    }
 }
 
 void BandBaker::RasterSamples(Worker& worker, TileGrid const& grid, std::vector<Index> const& faces, TexelBand& texels,

@@ -22,6 +22,7 @@ struct Band {
     std::vector<float> planes;       ///< [plane][row][column]; 0 where nothing is covered
     std::vector<uint8_t> isCovered;  ///< [row][column]
     std::vector<float> coverage;     ///< [row][column], 0 to 1; empty without supersampling
+    std::vector<float> low, high;    ///< per plane, over covered texels; low > high if there are none
 
     size_t GetNumTexels() const { return isCovered.size(); }
     float GetCoverage(size_t texel) const {
@@ -63,6 +64,7 @@ private:
     void RasterSamples(Worker& worker, TileGrid const& grid, std::vector<Index> const& faces, TexelBand& texels,
                        float* planes);
     void EvaluateHits(Worker& worker, Index face, int domain, TexelHits const& hits, float* planes, size_t planeSize);
+    static void FindRange(Band& band);
     void Supersample(Worker& worker, TileGrid const& grid, std::vector<Index> const& faces, Band& band);
     double FindMeanArea();
     std::string NamePlace(eval::SurfaceSampler::Place const& place) const;

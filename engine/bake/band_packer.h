@@ -22,10 +22,12 @@ struct PackedBand {
 
 /// Pads a band from its neighbours and packs it for each file.
 ///
-/// \param window   bands round `band`, in order, at least enough for the padding where they exist
+/// \param window   bands round `band`, in order, at least enough for the padding where they exist. Only
+///                 uncovered texels of `band` are written, so that neighbours may be padded from it at
+///                 the same time
 /// \param writers  one per file; null for files that are not written
 /// \param needsRows  per file
-PackedBand PackBand(std::span<std::shared_ptr<Band const> const> window, Band const& band, int padding,
+PackedBand PackBand(std::span<std::shared_ptr<Band> const> window, Band& band, int padding,
                     std::vector<FileLayout> const& files, std::vector<std::unique_ptr<ExrWriter>> const& writers,
                     bool hasCoverage, bool needsRows);
 

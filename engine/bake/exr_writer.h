@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -51,6 +53,9 @@ public:
     /// \param planes  one per channel of the spec, the tile's first texel; rows `stride` floats apart
     ExrTile Pack(int level, int x, int y, float const* const* planes, size_t stride) const;
 
+    /// A tile of zeros; those of one size are compressed once.
+    ExrTile PackEmpty(int level, int x, int y) const;
+
     /// \throws Error  Io: a full disk, ...
     void Write(ExrTile const& tile);
 
@@ -67,6 +72,8 @@ private:
     std::vector<int> _sortedChannels;  // EXR keeps channels sorted by name
     AtomicFile _file;
     std::unique_ptr<Backend> _backend;
+    mutable std::mutex _emptyMutex;
+    mutable std::map<std::pair<int, int>, std::vector<uint8_t>> _emptyTiles;  // by size
 };
 
 /// String attributes of an EXR file's header whose names start with `prefix`.

@@ -1,55 +1,48 @@
 #include "engine/bake/pixel_kernel.h"
 
-#include <bit>
+#include <array>
 
-// One clone per instruction set, chosen by the loader. Only integer operations and plain loops.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define LIMN_PER_TARGET  // the loader runs before the sanitizer does
-#else
-#define LIMN_PER_TARGET \
-    __attribute__((target_clones("default", "avx2", "arch=x86-64-v4"), optimize("O3")))
-#endif
+#include "eval/instruction_set.h"
 
 namespace limn::engine {
 
-LIMN_PER_TARGET
-size_t ConvertToHalf(float const* from, uint16_t* to, size_t count) {
-    uint32_t numClamped = 0;
-    size_t total = 0;
-    for (size_t start = 0; start < count; start += 1 << 20) {
-        size_t const end = start + (1 << 20) < count ? start + (1 << 20) : count;
-        numClamped = 0;
-        for (size_t i = start; i < end; ++i) {
-            uint32_t const bits = __builtin_bit_cast(uint32_t, from[i]);
-            uint32_t const sign = (bits >> 16) & 0x8000u;
-            uint32_t magnitude = bits & 0x7fffffffu;
-            bool const isBeyond = magnitude > 0x477fe000u;  // 65504
-            numClamped += isBeyond ? 1u : 0u;
-            magnitude = isBeyond ? 0x477fe000u : magnitude;
-            // Normal: rebias the exponent and round the 13 dropped bits to even.
-            uint32_t const normal = (magnitude + 0xfffu + ((magnitude >> 13) & 1u) - 0x38000000u) >> 13;
-            // Subnormal: adding 2^-1 makes the FPU shift the mantissa, rounding to even.
-            float const shifted = __builtin_bit_cast(float, magnitude) + 0.5f;
-            uint32_t const subnormal = __builtin_bit_cast(uint32_t, shifted) - 0x3f000000u;
-            uint32_t const half = magnitude < 0x38800000u ? subnormal : normal;
-            to[i] = static_cast<uint16_t>(sign | half);
-        }
-        total += numClamped;
+#define LIMN_DECLARE_KERNEL(name)                                                    \
+    namespace name {                                                                 \
+    size_t ConvertToHalf(float const*, size_t, uint16_t*, size_t, size_t, size_t);   \
+    void FindNearest(int32_t const*, int32_t*, size_t, int);                         \
+    void FindRange(float const*, uint8_t const*, size_t, float*, float*);            \
+    void SplitAndPredict(uint16_t const*, size_t, uint8_t*, uint8_t*);               \
     }
-    return total;
+LIMN_DECLARE_KERNEL(sse2)
+LIMN_DECLARE_KERNEL(avx2)
+LIMN_DECLARE_KERNEL(avx512)
+#undef LIMN_DECLARE_KERNEL
+
+namespace {
+
+size_t Chosen() { return static_cast<size_t>(eval::GetInstructionSet()); }
+
+}  // namespace
+
+size_t ConvertToHalf(float const* from, size_t fromStride, uint16_t* to, size_t toStride, size_t width,
+                     size_t height) {
+    constexpr std::array kKernels{sse2::ConvertToHalf, avx2::ConvertToHalf, avx512::ConvertToHalf};
+    return kKernels[Chosen()](from, fromStride, to, toStride, width, height);
 }
 
-LIMN_PER_TARGET
+void FindNearest(int32_t const* dy, int32_t* best, size_t count, int radius) {
+    constexpr std::array kKernels{sse2::FindNearest, avx2::FindNearest, avx512::FindNearest};
+    kKernels[Chosen()](dy, best, count, radius);
+}
+
+void FindRange(float const* values, uint8_t const* covered, size_t count, float* low, float* high) {
+    constexpr std::array kKernels{sse2::FindRange, avx2::FindRange, avx512::FindRange};
+    kKernels[Chosen()](values, covered, count, low, high);
+}
+
 void SplitAndPredict(uint16_t const* words, size_t count, uint8_t* scratch, uint8_t* bytes) {
-    for (size_t i = 0; i < count; ++i) {
-        scratch[i] = static_cast<uint8_t>(words[i]);
-        scratch[count + i] = static_cast<uint8_t>(words[i] >> 8);
-    }
-    if (count == 0) return;
-    bytes[0] = scratch[0];
-    for (size_t i = 1; i < 2 * count; ++i) {
-        bytes[i] = static_cast<uint8_t>(scratch[i] - scratch[i - 1] + 128);
-    }
+    constexpr std::array kKernels{sse2::SplitAndPredict, avx2::SplitAndPredict, avx512::SplitAndPredict};
+    kKernels[Chosen()](words, count, scratch, bytes);
 }
 
 }  // namespace limn::engine

@@ -8,10 +8,24 @@ namespace limn::engine {
 /// The two loops over pixels that decide how fast a file is written. Integer arithmetic, the same
 /// bytes at every vector width.
 
-/// 32-bit floats to 16-bit, rounding to nearest even. Finite values beyond +-65504 are clamped.
+/// A block of 32-bit floats to 16-bit, rounding to nearest even. Finite values beyond +-65504 are
+/// clamped.
 ///
+/// \param fromStride, toStride  elements from row to row
 /// \return how many were clamped
-size_t ConvertToHalf(float const* from, uint16_t* to, size_t count);
+size_t ConvertToHalf(float const* from, size_t fromStride, uint16_t* to, size_t toStride, size_t width,
+                     size_t height);
+
+/// Extends [low, high] by the values of covered texels.
+void FindRange(float const* values, uint8_t const* covered, size_t count, float* low, float* high);
+
+/// For every column the smaller of best[x] and, over offsets dx in [-radius, radius],
+///     (dx^2 + dy[x + dx]^2) * 2^16 + (dy[x + dx] + 128) * 2^8 + (dx + 128).
+///
+/// \param dy    at most 64 in magnitude, or kFarRow; readable from -radius to count + radius - 1
+/// \param best  the least key so far
+void FindNearest(int32_t const* dy, int32_t* best, size_t count, int radius);
+inline constexpr int32_t kFarRow = 127;
 
 /// The first half of OpenEXR's ZIP scheme: bytes at even places, then bytes at odd places, each
 /// replaced by its difference to the byte before it, plus 128.

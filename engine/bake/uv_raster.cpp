@@ -162,7 +162,6 @@ void UVRaster::RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain cons
                        half, hits);
         }
     }
-    Flush(piece, hits);
 }
 
 void UVRaster::RasterCell(Piece const& piece, double x, double y, double half, TexelHits& hits) {
@@ -208,47 +207,90 @@ void UVRaster::RasterCell(Piece const& piece, double x, double y, double half, T
         if (from > to) continue;
         int const firstX = std::max(0, static_cast<int>(std::ceil(std::max(from, -1.0))));
         int const lastX = std::min(_grid.width - 1, static_cast<int>(std::floor(std::min(to, 1e9))));
-        for (int column = firstX; column <= lastX; ++column) {
-            double const dx = column - cx;
-            double const ds = (vt * dx - ut * dy) * inverse, dt = (us * dy - vs * dx) * inverse;
-            _texel.push_back((row - _band->firstRow) * _band->width + column);
-            _targetX.push_back(column - piece.originX);
-            _targetY.push_back(row - piece.originY);
-            _x.push_back(x + std::clamp(ds, -half, half));
-            _y.push_back(y + std::clamp(dt, -half, half));
-        }
-        if (_texel.size() >= kFlushAt) Flush(piece, hits);
+        AddRow(piece, row, firstX, lastX);
+        if (_texel.size() >= kFlushAt) Flush(piece, x, y, half, hits);
+    }
+    Flush(piece, x, y, half, hits);
+}
+
+void UVRaster::AddRow(Piece const& piece, int row, int firstX, int lastX) {
+    if (firstX > lastX) return;
+    size_t const start = _texel.size(), count = static_cast<size_t>(lastX - firstX + 1);
+    _texel.resize(start + count);
+    _targetX.resize(start + count);
+    _targetY.resize(start + count);
+    int const texel = (row - _band->firstRow) * _band->width + firstX;
+    double const x = firstX - piece.originX, y = row - piece.originY;
+    for (size_t i = 0; i < count; ++i) {
+        _texel[start + i] = texel + static_cast<int>(i);
+        _targetX[start + i] = x + static_cast<double>(static_cast<int>(i));
+        _targetY[start + i] = y;
     }
 }
 
-void UVRaster::Flush(Piece const& piece, TexelHits& hits) {
+/// Solves for the candidates gathered in the cell about (x, y).
+void UVRaster::Flush(Piece const& piece, double x, double y, double half, TexelHits& hits) {
     size_t const count = _texel.size();
     if (count == 0) return;
     size_t const padded = (count + eval::kInversionLanes - 1) / eval::kInversionLanes * eval::kInversionLanes;
-    for (auto* array : {&_targetX, &_targetY, &_x, &_y}) array->resize(padded, array->back());
+    _targetX.resize(padded, _targetX.back());
+    _targetY.resize(padded, _targetY.back());
+    _x.resize(padded);
+    _y.resize(padded);
     _residual.resize(padded);
-    double const margin = 0.25;
-    eval::InversionBatch const batch{&piece.coefficients[0][0],
-                                     _targetX.data(),
-                                     _targetY.data(),
-                                     _x.data(),
-                                     _y.data(),
-                                     _residual.data(),
-                                     static_cast<int>(count),
-                                     -_tree.GetCentre() - margin,
-                                     1.0 - _tree.GetCentre() + margin,
-                                     kMaxNewtonSteps};
-    eval::InvertTextureMap(batch, _isTriangle);
-    for (size_t i = 0; i < count; ++i) Accept(piece, _texel[i], _x[i], _y[i], _residual[i], hits);
-    for (auto* array : {&_targetX, &_targetY, &_x, &_y}) array->clear();
+    constexpr double kMargin = 0.25;  // iterates may leave the domain this far on their way
+    eval::InvertTextureMap({.coefficients = &piece.coefficients[0][0],
+                            .targetX = _targetX.data(),
+                            .targetY = _targetY.data(),
+                            .startX = x,
+                            .startY = y,
+                            .reach = 2.0 * half,
+                            .low = -_tree.GetCentre() - kMargin,
+                            .high = 1.0 - _tree.GetCentre() + kMargin,
+                            .x = _x.data(),
+                            .y = _y.data(),
+                            .residual = _residual.data(),
+                            .count = static_cast<int>(count),
+                            .maxSteps = kMaxNewtonSteps},
+                           _isTriangle);
+    Accept(piece, hits);
     _texel.clear();
+    _targetX.clear();
+    _targetY.clear();
 }
 
-void UVRaster::Accept(Piece const& piece, int texel, double x, double y, double residual, TexelHits& hits) {
-    Index& owner = _band->owner[texel];
-    if (owner == _face) return;  // found from a neighbouring cell or piece before
+/// Keeps the candidates that the face covers.
+void UVRaster::Accept(Piece const& piece, TexelHits& hits) {
+    size_t const count = _texel.size(), start = hits.texel.size();
+    hits.texel.resize(start + count);
+    hits.s.resize(start + count);
+    hits.t.resize(start + count);
+    size_t end = start;
+    double const centre = _tree.GetCentre(), scale = piece.domain.scale;
+    double const originS = piece.domain.origin[0], originT = piece.domain.origin[1];
+    for (size_t i = 0; i < count; ++i) {
+        Index& owner = _band->owner[_texel[i]];
+        if (owner == _face) continue;  // found from a neighbouring cell or piece before
+        double s = _x[i] + centre, t = _y[i] + centre;
+        bool const isPlainHit = owner < 0 && _residual[i] <= kCoveredTexels && s >= 0.0 && t >= 0.0 &&
+                                (_isTriangle ? s + t <= 1.0 : s <= 1.0 && t <= 1.0);
+        if (!isPlainHit && !IsCovered(piece, i, s, t)) continue;
+        owner = _face;
+        hits.texel[end] = _texel[i];
+        hits.s[end] = originS + scale * s;
+        hits.t[end] = originT + scale * t;
+        ++end;
+    }
+    hits.texel.resize(end);
+    hits.s.resize(end);
+    hits.t.resize(end);
+}
+
+/// The cases that are not plain hits: at or outside the domain's edge, claimed by another face, or not
+/// converged. Clamps (s, t) to the domain; true if the texel is to be this face's.
+bool UVRaster::IsCovered(Piece const& piece, size_t candidate, double& s, double& t) {
+    int const texel = _texel[candidate];
     double const centre = _tree.GetCentre();
-    double s = x + centre, t = y + centre;
     // The nearest place of the domain.
     double cs = std::clamp(s, 0.0, 1.0), ct = std::clamp(t, 0.0, 1.0);
     if (_isTriangle && cs + ct > 1.0) {
@@ -257,12 +299,12 @@ void UVRaster::Accept(Piece const& piece, int texel, double x, double y, double 
         ct = 1.0 - cs;
     }
     double const outside = std::max(std::abs(cs - s), std::abs(ct - t));
-    if (residual > kCoveredTexels) {
+    if (_residual[candidate] > kCoveredTexels) {
         if (outside == 0.0) _band->failed[texel] = 1;
-        return;
+        return false;
     }
     if (outside > kClampParameter) {
-        if (outside > 0.2) return;
+        if (outside > 0.2) return false;
         // Outside; covered only if the domain's edge passes within kCoveredTexels.
         double distance = 0.0;
         int const row = texel / _band->width + _band->firstRow, column = texel % _band->width;
@@ -273,17 +315,16 @@ void UVRaster::Accept(Piece const& piece, int texel, double x, double y, double 
             double const target = k == 0 ? column - piece.originX : row - piece.originY;
             distance += (value[0] - target) * (value[0] - target);
         }
-        if (distance > kCoveredTexels * kCoveredTexels) return;
+        if (distance > kCoveredTexels * kCoveredTexels) return false;
     }
-    if (owner >= 0) {
+    if (_band->owner[texel] >= 0) {
         double const inside = std::min({cs, ct, _isTriangle ? 1.0 - cs - ct : std::min(1.0 - cs, 1.0 - ct)});
         if (inside > kOverlapParameter && outside == 0.0) _band->overlap[texel] = 1;
-        return;
+        return false;
     }
-    owner = _face;
-    hits.texel.push_back(texel);
-    hits.s.push_back(piece.domain.origin[0] + piece.domain.scale * cs);
-    hits.t.push_back(piece.domain.origin[1] + piece.domain.scale * ct);
+    s = cs;
+    t = ct;
+    return true;
 }
 
 }  // namespace limn::engine

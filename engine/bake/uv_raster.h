@@ -79,8 +79,10 @@ private:
     void RasterNode(int node, int depth, TexelHits& hits);
     void RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain const& domain, TexelHits& hits);
     void RasterCell(Piece const& piece, double x, double y, double half, TexelHits& hits);
-    void Flush(Piece const& piece, TexelHits& hits);
-    void Accept(Piece const& piece, int texel, double x, double y, double residual, TexelHits& hits);
+    void AddRow(Piece const& piece, int row, int firstX, int lastX);
+    void Flush(Piece const& piece, double x, double y, double half, TexelHits& hits);
+    void Accept(Piece const& piece, TexelHits& hits);
+    bool IsCovered(Piece const& piece, size_t candidate, double& s, double& t);
 
     eval::FaceTree _tree;
     bool _isTriangle;
