@@ -30,14 +30,6 @@ void TexelBand::Reset(int first, int rows, int tileWidth) {
     failed.assign(count, 0);
 }
 
-/// A polynomial piece of the texture map in texels about a whole-numbered origin.
-struct UVRaster::Piece {
-    double coefficients[2][16];
-    double originX, originY;
-    double bounds[2][3];  // of |d2/dxx|, |d2/dxy|, |d2/dyy| over the piece, per coordinate
-    far_ext::SubDomain domain;
-};
-
 UVRaster::UVRaster(eval::LimitSurface const& surface, std::span<double const> uvs)
     : _tree(surface, uvs, 2), _isTriangle(surface.IsLoop()) {}
 
@@ -112,7 +104,8 @@ void UVRaster::RasterNode(int node, int depth, TexelHits& hits) {
 
 void UVRaster::RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain const& domain, TexelHits& hits) {
     int const n = _tree.GetNumCoefficients();
-    Piece piece;
+    TexturePiece piece;
+    piece.isTriangle = _isTriangle;
     piece.domain = domain;
     double const scale[2] = {static_cast<double>(_grid.width), -static_cast<double>(_grid.height)};
     for (int k = 0; k < 2; ++k) {
@@ -125,34 +118,14 @@ void UVRaster::RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain cons
     piece.originY = std::floor(centreY);
     piece.coefficients[0][0] = centreX - piece.originX;
     piece.coefficients[1][0] = centreY - piece.originY;
-
-    // Bounds of the map and of its second derivatives over the piece, term by term.
-    double const reach = _isTriangle ? 2.0 / 3.0 : 0.5;
-    double extent[2] = {0, 0};
-    double power[8] = {1, reach};
-    for (int i = 2; i < 8; ++i) power[i] = power[i - 1] * reach;
-    for (int k = 0; k < 2; ++k) {
-        double* const b = piece.bounds[k];
-        b[0] = b[1] = b[2] = 0.0;
-        int index = 0;
-        int const numJ = _isTriangle ? 5 : 4;
-        for (int j = 0; j < numJ; ++j) {
-            for (int i = 0; i < (_isTriangle ? 5 - j : 4); ++i, ++index) {
-                double const c = std::abs(piece.coefficients[k][index]);
-                if (i + j > 0) extent[k] += c * power[i + j];
-                if (i > 1) b[0] += i * (i - 1) * c * power[i + j - 2];
-                if (i > 0 && j > 0) b[1] += i * j * c * power[i + j - 2];
-                if (j > 1) b[2] += j * (j - 1) * c * power[i + j - 2];
-            }
-        }
-    }
+    piece.FindBounds();
     double const top = _band->firstRow - 1.0, bottom = _band->firstRow + _band->numRows + 0.0;
-    if (centreY + extent[1] < top || centreY - extent[1] > bottom || centreX + extent[0] < -1.0 ||
-        centreX - extent[0] > _grid.width) {
+    if (centreY + piece.reach[1] < top || centreY - piece.reach[1] > bottom || centreX + piece.reach[0] < -1.0 ||
+        centreX - piece.reach[0] > _grid.width || piece.IsCollapsed()) {
         return;
     }
     double worst = 0.0;
-    for (auto const& b : piece.bounds) worst = std::max(worst, 0.125 * (b[0] + 2 * b[1] + b[2]));
+    for (int k = 0; k < 2; ++k) worst = std::max(worst, piece.GetStray(k, 0.5));
     int const numCells = std::clamp(static_cast<int>(std::ceil(std::sqrt(worst / 0.4))), 1, 256);
     double const half = 0.5 / numCells;
     for (int j = 0; j < numCells; ++j) {
@@ -164,17 +137,10 @@ void UVRaster::RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain cons
     }
 }
 
-void UVRaster::RasterCell(Piece const& piece, double x, double y, double half, TexelHits& hits) {
-    auto const u = _isTriangle ? eval::EvaluateTrianglePolynomial(piece.coefficients[0], x, y)
-                               : eval::EvaluateQuadPolynomial(piece.coefficients[0], x, y);
-    auto const v = _isTriangle ? eval::EvaluateTrianglePolynomial(piece.coefficients[1], x, y)
-                               : eval::EvaluateQuadPolynomial(piece.coefficients[1], x, y);
+void UVRaster::RasterCell(TexturePiece const& piece, double x, double y, double half, TexelHits& hits) {
+    auto const u = piece.Evaluate(0, x, y), v = piece.Evaluate(1, x, y);
     // How far the map strays from its linear part within the cell, plus what counts as covered.
-    double stray[2];
-    for (int k = 0; k < 2; ++k) {
-        double const* const b = piece.bounds[k];
-        stray[k] = 0.5 * half * half * (b[0] + 2 * b[1] + b[2]) + 10 * kCoveredTexels;
-    }
+    double const stray[2] = {piece.GetStray(0, half) + 10 * kCoveredTexels, piece.GetStray(1, half) + 10 * kCoveredTexels};
     double const cx = piece.originX + u[0], cy = piece.originY + v[0];
     double const us = u[1], ut = u[2], vs = v[1], vt = v[2];
     double const reachX = (std::abs(us) + std::abs(ut)) * half + stray[0];
@@ -213,7 +179,7 @@ void UVRaster::RasterCell(Piece const& piece, double x, double y, double half, T
     Flush(piece, x, y, half, hits);
 }
 
-void UVRaster::AddRow(Piece const& piece, int row, int firstX, int lastX) {
+void UVRaster::AddRow(TexturePiece const& piece, int row, int firstX, int lastX) {
     if (firstX > lastX) return;
     size_t const start = _texel.size(), count = static_cast<size_t>(lastX - firstX + 1);
     _texel.resize(start + count);
@@ -229,7 +195,7 @@ void UVRaster::AddRow(Piece const& piece, int row, int firstX, int lastX) {
 }
 
 /// Solves for the candidates gathered in the cell about (x, y).
-void UVRaster::Flush(Piece const& piece, double x, double y, double half, TexelHits& hits) {
+void UVRaster::Flush(TexturePiece const& piece, double x, double y, double half, TexelHits& hits) {
     size_t const count = _texel.size();
     if (count == 0) return;
     size_t const padded = (count + eval::kInversionLanes - 1) / eval::kInversionLanes * eval::kInversionLanes;
@@ -260,7 +226,7 @@ void UVRaster::Flush(Piece const& piece, double x, double y, double half, TexelH
 }
 
 /// Keeps the candidates that the face covers.
-void UVRaster::Accept(Piece const& piece, TexelHits& hits) {
+void UVRaster::Accept(TexturePiece const& piece, TexelHits& hits) {
     size_t const count = _texel.size(), start = hits.texel.size();
     hits.texel.resize(start + count);
     hits.s.resize(start + count);
@@ -288,7 +254,7 @@ void UVRaster::Accept(Piece const& piece, TexelHits& hits) {
 
 /// The cases that are not plain hits: at or outside the domain's edge, claimed by another face, or not
 /// converged. Clamps (s, t) to the domain; true if the texel is to be this face's.
-bool UVRaster::IsCovered(Piece const& piece, size_t candidate, double& s, double& t) {
+bool UVRaster::IsCovered(TexturePiece const& piece, size_t candidate, double& s, double& t) {
     int const texel = _texel[candidate];
     double const centre = _tree.GetCentre();
     // The nearest place of the domain.
@@ -300,22 +266,15 @@ bool UVRaster::IsCovered(Piece const& piece, size_t candidate, double& s, double
     }
     double const outside = std::max(std::abs(cs - s), std::abs(ct - t));
     if (_residual[candidate] > kCoveredTexels) {
-        if (outside == 0.0) _band->failed[texel] = 1;
-        return false;
-    }
-    if (outside > kClampParameter) {
+        auto const found = SearchPiece(piece, _targetX[candidate], _targetY[candidate], kCoveredTexels, cs, ct);
+        if (found == SearchResult::Undecided) _band->failed[texel] = 1;
+        if (found != SearchResult::Found) return false;
+    } else if (outside > kClampParameter) {
         if (outside > 0.2) return false;
         // Outside; covered only if the domain's edge passes within kCoveredTexels.
-        double distance = 0.0;
-        int const row = texel / _band->width + _band->firstRow, column = texel % _band->width;
-        for (int k = 0; k < 2; ++k) {
-            auto const value =
-                _isTriangle ? eval::EvaluateTrianglePolynomial(piece.coefficients[k], cs - centre, ct - centre)
-                            : eval::EvaluateQuadPolynomial(piece.coefficients[k], cs - centre, ct - centre);
-            double const target = k == 0 ? column - piece.originX : row - piece.originY;
-            distance += (value[0] - target) * (value[0] - target);
-        }
-        if (distance > kCoveredTexels * kCoveredTexels) return false;
+        double const dx = piece.Evaluate(0, cs - centre, ct - centre)[0] - _targetX[candidate];
+        double const dy = piece.Evaluate(1, cs - centre, ct - centre)[0] - _targetY[candidate];
+        if (dx * dx + dy * dy > kCoveredTexels * kCoveredTexels) return false;
     }
     if (_band->owner[texel] >= 0) {
         double const inside = std::min({cs, ct, _isTriangle ? 1.0 - cs - ct : std::min(1.0 - cs, 1.0 - ct)});

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/bake/texture_piece.h"
 #include "eval/limit_surface.h"
 
 namespace limn::engine {
@@ -27,7 +28,7 @@ struct TexelBand {
     int firstRow = 0, numRows = 0, width = 0;
     std::vector<Index> owner;      ///< per texel: the lowest face that covers it, or -1
     std::vector<uint8_t> overlap;  ///< 1 where another face covers it too, apart from shared edges
-    std::vector<uint8_t> failed;   ///< 1 where a candidate lay inside but did not converge
+    std::vector<uint8_t> failed;   ///< 1 where a search came to no end
 
     void Reset(int first, int rows, int tileWidth);
 };
@@ -74,15 +75,13 @@ public:
     std::array<double, 4> GetJacobian(int domain, double s, double t);
 
 private:
-    struct Piece;
-
     void RasterNode(int node, int depth, TexelHits& hits);
     void RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain const& domain, TexelHits& hits);
-    void RasterCell(Piece const& piece, double x, double y, double half, TexelHits& hits);
-    void AddRow(Piece const& piece, int row, int firstX, int lastX);
-    void Flush(Piece const& piece, double x, double y, double half, TexelHits& hits);
-    void Accept(Piece const& piece, TexelHits& hits);
-    bool IsCovered(Piece const& piece, size_t candidate, double& s, double& t);
+    void RasterCell(TexturePiece const& piece, double x, double y, double half, TexelHits& hits);
+    void AddRow(TexturePiece const& piece, int row, int firstX, int lastX);
+    void Flush(TexturePiece const& piece, double x, double y, double half, TexelHits& hits);
+    void Accept(TexturePiece const& piece, TexelHits& hits);
+    bool IsCovered(TexturePiece const& piece, size_t candidate, double& s, double& t);
 
     eval::FaceTree _tree;
     bool _isTriangle;
