@@ -26,7 +26,7 @@ struct BakeOptions {
     std::vector<std::string> groups;  ///< only faces of these; empty for all
     bool isLeftHanded = false;
     bool skipExisting = false;
-    bool hasPreview = false, hasAudit = false;
+    bool hasPreview = false;
     bool wantsChecksums = false;   ///< fill BakeOutput::sha256
     std::string version;           ///< of the program, for the header
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/bake/audit.h"
 #include "engine/bake/bake.h"
 #include "engine/cli/cli.h"
 #include "engine/options_text.h"
@@ -17,7 +18,8 @@ struct Arguments {
     std::vector<std::string> maps, tiles, groups;
     int samples = 1, padding = 16;
     bool isHalf = false, hasMips = false, hasCoverage = false, hasPreview = false, isVector = false,
-         skipExisting = false;
+         skipExisting = false, hasAudit = false;
+    double auditBound = 1e-3;
 };
 
 int ParseInteger(std::string const& option, std::string_view text, int low, int high) {
@@ -111,6 +113,26 @@ void AddToReport(nlohmann::json& report, engine::BakeReport const& bake) {
     }
 }
 
+nlohmann::json ToJson(engine::AuditReport const& audit, engine::BakeReport const& bake) {
+    nlohmann::json seams = nlohmann::json::array(), components = nlohmann::json::array();
+    engine::SeamAudit worst;
+    for (auto const& seam : audit.seams) {
+        seams.push_back({{"map", seam.map}, {"samples", seam.samples}, {"max", seam.max}, {"p99", seam.p99}, {"place", seam.place}});
+        if (seam.max >= worst.max) worst = seam;
+    }
+    for (auto const& c : audit.gaussBonnet) {
+        components.push_back({{"component", c.component}, {"integral", c.integral}, {"expected", c.expected},
+                              {"relative_error", c.relativeError}, {"audited", c.wasAudited}, {"reason", c.reason}});
+    }
+    return {{"seam_max", worst.max},
+            {"seam_p99", worst.p99},
+            {"seam_place", worst.place},
+            {"seams", seams},
+            {"coverage",
+             {{"texels", bake.texelsCovered}, {"overlaps", bake.overlaps}, {"faces_without_texels", bake.facesWithoutTexels.size()}}},
+            {"gauss_bonnet", components}};
+}
+
 int Run(Arguments const& a, Context& context) {
     engine::BakeOptions const options = MakeOptions(a, context.GetCommon());
     if (a.meshes.size() > 1 && a.pattern.find("{mesh}") == std::string::npos) {
@@ -119,6 +141,7 @@ int Run(Arguments const& a, Context& context) {
     if (a.maps.size() > 1 && a.pattern.find("{map}") == std::string::npos) {
         context.GetJob().Warn("the output's name has no {map}: all maps go into one file with a layer each");
     }
+    int status = kDone;
     for (std::string const& path : a.meshes) {
         auto const [scene, refiner] = context.Load(path);
         Context::Mesh other;
@@ -126,8 +149,14 @@ int Run(Arguments const& a, Context& context) {
         auto const report = engine::Bake(scene, *refiner, a.against.empty() ? nullptr : &other.scene, options,
                                          context.GetJob());
         AddToReport(context.GetReport(), report);
+        if (!a.hasAudit) continue;
+        auto const audit = engine::Audit(scene, *refiner, options, report, a.auditBound, context.GetJob());
+        context.GetReport()["audit"] = ToJson(audit, report);
+        if (audit.isWithin) continue;
+        context.GetJob().Warn(fmt::format("{}: the Gauss-Bonnet audit misses its bound {}; the files stay", path, a.auditBound));
+        status = kNotReached;
     }
-    return kDone;
+    return status;
 }
 
 }  // namespace
@@ -156,6 +185,8 @@ Verb AddBake(CLI::App& app) {
     verb->add_flag("--vector", a->isVector, "displacement as a vector");
     verb->add_option("--space", a->space, "object (default) or tangent, of vector displacement")
         ->check(CLI::IsMember({"object", "tangent"}));
+    verb->add_flag("--audit", a->hasAudit, "check seams, coverage and Gauss-Bonnet, and report them");
+    verb->add_option("--audit-bound", a->auditBound, "of the Gauss-Bonnet error (default 1e-3); missed: exit status 4");
     verb->add_option("--groups", a->groups, "only faces of these usemtl, g or o groups")->delimiter(',');
     verb->add_flag("--skip-existing", a->skipExisting, "leave files of the same input, options and version alone");
     verb->footer("Example:\n  limn bake scenes/spot/spot.obj -o 'out/spot.{map}.<UDIM>.exr' --maps mean,normal --size 2048 "

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "far_ext/error.h"
+
+namespace limn::test {
+
+inline std::string ReadText(std::string const& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw std::runtime_error("cannot read " + path);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+inline void WriteText(std::string const& path, std::string const& text) {
+    std::ofstream file(path, std::ios::binary);
+    file << text;
+    if (!file.flush()) throw std::runtime_error("cannot write " + path);
+}
+
+/// A folder of its own, gone with its owner.
+class TemporaryFolder {
+public:
+    TemporaryFolder() : _path((std::filesystem::temp_directory_path() / "limn_test_XXXXXX").string()) {
+        if (!::mkdtemp(_path.data())) throw std::runtime_error("no temporary folder");
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(_path, ignored);
+    }
+    TemporaryFolder(TemporaryFolder const&) = delete;
+    TemporaryFolder& operator=(TemporaryFolder const&) = delete;
+
+    std::string const& GetPath() const { return _path; }
+    std::string operator/(std::string const& name) const { return _path + "/" + name; }
+
+    /// Writes a file and returns its path.
+    std::string Write(std::string const& name, std::string const& text) const {
+        WriteText(*this / name, text);
+        return *this / name;
+    }
+
+    /// Names of everything in it, hidden files too, sorted.
+    std::vector<std::string> List() const {
+        std::vector<std::string> names;
+        for (auto const& entry : std::filesystem::directory_iterator(_path)) {
+            names.push_back(entry.path().filename().string());
+        }
+        std::sort(names.begin(), names.end());
+        return names;
+    }
+
+private:
+    std::string _path;
+};
+
+/// The message of the Error that `act` throws; empty if it throws none.
+template <class Act>
+std::string RefusalOf(Act act) {
+    try {
+        act();
+    } catch (Error const& error) {
+        return error.what();
+    }
+    return {};
+}
+
+/// A text with a few of its bytes overwritten, removed or doubled, the same for the same seed.
+inline std::string Damage(std::string text, unsigned seed) {
+    std::mt19937 random(seed);
+    for (int i = 0; i < 6 && !text.empty(); ++i) {
+        size_t const at = random() % text.size();
+        switch (random() % 4) {
+            case 0: text[at] = static_cast<char>(random()); break;
+            case 1: text.erase(at, 1 + random() % 8); break;
+            case 2: text.insert(at, text.substr(random() % text.size(), random() % 16)); break;
+            default: text[at] = "0123456789-/. \n"[random() % 15]; break;
+        }
+    }
+    return text;
+}
+
+/// Bytes without any meaning, after a beginning that has one.
+inline std::string Garbage(std::string beginning, unsigned seed) {
+    std::mt19937 random(seed);
+    for (int i = 0; i < 2000; ++i) beginning += static_cast<char>(random());
+    return beginning;
+}
+
+}  // namespace limn::test
