@@ -1,6 +1,10 @@
 #include "engine/refine.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
+#include <span>
 
 #include <fmt/format.h>
 #include <opensubdiv/far/primvarRefiner.h>
@@ -16,59 +20,50 @@ namespace {
 
 using Level = Far::TopologyLevel;
 
-/// Rows of doubles of a length known at run time, as Far's refiner reads and writes them.
-class Rows {
-public:
-    struct Row {
-        double* data;
-        int length;
-        void Clear() { std::fill_n(data, length, 0.0); }
-        void AddWithWeight(Row const& other, double weight) {
-            for (int c = 0; c < length; ++c) data[c] += weight * other.data[c];
-        }
-    };
+/// N doubles, as Far's refiner reads and blends them.
+template <size_t N>
+struct Row {
+    std::array<double, N> values;
 
-    Rows(std::vector<double>& values, int length) : _values(values), _length(length) {}
-    Row operator[](Index i) const { return {&_values[static_cast<size_t>(i) * _length], _length}; }
-
-private:
-    std::vector<double>& _values;
-    int _length;
-};
-
-/// Far asks for references to rows; a temporary proxy serves.
-struct RowsView {
-    Rows rows;
-    mutable Rows::Row current{};
-    Rows::Row& operator[](Index i) const {
-        current = rows[i];
-        return current;
+    void Clear() { values.fill(0.0); }
+    void AddWithWeight(Row const& other, double weight) {
+        for (size_t c = 0; c < N; ++c) values[c] += weight * other.values[c];
     }
 };
 
-std::vector<double> RefineVertexValues(Far::TopologyRefiner const& refiner, std::vector<double> values, int length) {
+/// Refines values of length N through all levels: of vertices, or of a face-varying channel.
+template <size_t N>
+std::vector<double> RefineValues(Far::TopologyRefiner const& refiner, std::span<double const> base, int fvarChannel = -1) {
+    static_assert(sizeof(Row<N>) == N * sizeof(double));
     Far::PrimvarRefinerReal<double> const primvars(refiner);
+    std::vector<Row<N>> rows(base.size() / N);
+    std::memcpy(rows.data(), base.data(), base.size_bytes());
     for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
         CheckInterrupted();
-        std::vector<double> fine(static_cast<size_t>(refiner.GetLevel(level).GetNumVertices()) * length);
-        RowsView const from{{values, length}};
-        RowsView to{{fine, length}};
-        primvars.Interpolate(level, from, to);
-        values = std::move(fine);
+        auto const topology = refiner.GetLevel(level);
+        bool const isFVar = fvarChannel >= 0;
+        std::vector<Row<N>> fine(
+            static_cast<size_t>(isFVar ? topology.GetNumFVarValues(fvarChannel) : topology.GetNumVertices()));
+        if (isFVar) primvars.InterpolateFaceVarying(level, rows, fine, fvarChannel);
+        else primvars.Interpolate(level, rows, fine);
+        rows = std::move(fine);
     }
-    return values;
+    std::vector<double> refined(rows.size() * N);
+    std::memcpy(refined.data(), rows.data(), refined.size() * sizeof(double));
+    return refined;
 }
 
-std::vector<double> RefineUVs(Far::TopologyRefiner const& refiner, std::vector<double> values) {
-    Far::PrimvarRefinerReal<double> const primvars(refiner);
-    for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
-        std::vector<double> fine(static_cast<size_t>(refiner.GetLevel(level).GetNumFVarValues(0)) * 2);
-        RowsView const from{{values, 2}};
-        RowsView to{{fine, 2}};
-        primvars.InterpolateFaceVarying(level, from, to, 0);
-        values = std::move(fine);
+Primvar RefinePrimvar(Far::TopologyRefiner const& refiner, Primvar const& primvar) {
+    Primvar fine{primvar.name, primvar.numChannels, {}};
+    size_t const n = static_cast<size_t>(primvar.numChannels);
+    for (size_t c = 0; c < n; ++c) {
+        std::vector<double> channel;
+        for (size_t i = c; i < primvar.values.size(); i += n) channel.push_back(static_cast<double>(primvar.values[i]));
+        auto const refined = RefineValues<1>(refiner, channel);
+        fine.values.resize(refined.size() * n);
+        for (size_t i = 0; i < refined.size(); ++i) fine.values[i * n + c] = static_cast<float>(refined[i]);
     }
-    return values;
+    return fine;
 }
 
 /// The base face of every face of the last level.
@@ -166,9 +161,9 @@ Scene RefineUniformly(Scene const& scene, int levels, bool toLimit) {
         fine.cage.faceVertices.insert(fine.cage.faceVertices.end(), vertices.begin(), vertices.end());
     }
     CopyTags(last, scene.cage.options.GetVtxBoundaryInterpolation(), fine.cage);
-    fine.positions = RefineVertexValues(*refiner, scene.positions, 3);
+    fine.positions = RefineValues<3>(*refiner, scene.positions);
     if (scene.HasUVs()) {
-        fine.uvs = RefineUVs(*refiner, scene.uvs);
+        fine.uvs = RefineValues<2>(*refiner, scene.uvs, 0);
         far_ext::FVarChannel channel{last.GetNumFVarValues(0), {}};
         for (Index face = 0; face < last.GetNumFaces(); ++face) {
             auto const values = last.GetFaceFVarValues(face, 0);
@@ -176,10 +171,7 @@ Scene RefineUniformly(Scene const& scene, int levels, bool toLimit) {
         }
         fine.cage.fvarChannels.push_back(std::move(channel));
     }
-    for (Primvar const& primvar : scene.primvars) {
-        auto const values = RefineVertexValues(*refiner, {primvar.values.begin(), primvar.values.end()}, primvar.numChannels);
-        fine.primvars.push_back({primvar.name, primvar.numChannels, {values.begin(), values.end()}});
-    }
+    for (Primvar const& primvar : scene.primvars) fine.primvars.push_back(RefinePrimvar(*refiner, primvar));
     std::vector<Index> const base = FindBaseFaces(*refiner);
     for (size_t kind = 0; kind < 3; ++kind) {
         fine.groups[kind].names = scene.groups[kind].names;

@@ -22,9 +22,9 @@ struct Outcome {
 };
 
 struct RunOptions {
-    std::vector<std::string> environment;  ///< NAME=VALUE, beside what the test itself has
-    std::string folder;                    ///< to run in; empty for the test's own
-    std::string stdoutPath;                ///< where stdout goes instead of into Outcome::out
+    std::vector<std::string> environment{};  ///< NAME=VALUE, beside what the test itself has
+    std::string folder{};                  ///< to run in; empty for the test's own
+    std::string stdoutPath{};              ///< where stdout goes instead of into Outcome::out
 };
 
 /// A program that runs beside the test. It is killed if the test ends before it.
