@@ -88,7 +88,7 @@ private:
     PreviewBuilder::Picture& _picture;
 };
 
-/// The value that 98 % of the magnitudes do not pass, so that a few extremes do not hide the rest.
+/// The value that a share of them does not pass, so that a few extremes do not hide the rest.
 float FindQuantile(std::vector<float> values, double share) {
     if (values.empty()) return 0.0f;
     auto const at = values.begin() + static_cast<ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -128,7 +128,11 @@ PreviewBuilder::Picture PreviewBuilder::Draw() const {
     int const numChannels = _map.GetNumChannels();
     // A vector map shows its three components as colours; anything else its first channel.
     bool const isColour = numChannels == 3;
-    auto const value = [&](int c, size_t texel) { return _sums[c * numTexels + texel] / _weights[texel]; };
+    bool const isLine = _map.averaging == Averaging::Line;  // its sign is free: show magnitudes
+    auto const value = [&](int c, size_t texel) {
+        float const mean = _sums[c * numTexels + texel] / _weights[texel];
+        return isLine ? std::abs(mean) : mean;
+    };
     std::array<float, 3> low{}, high{};
     for (int c = 0; c < (isColour ? 3 : 1); ++c) {
         std::vector<float> values;
@@ -139,12 +143,14 @@ PreviewBuilder::Picture PreviewBuilder::Draw() const {
             high[c] = FindQuantile(std::move(values), 0.98);
             low[c] = -high[c];
         } else {
-            low[c] = FindQuantile(values, 0.0);
-            high[c] = FindQuantile(std::move(values), 1.0);
+            low[c] = FindQuantile(values, isColour ? 0.0 : 0.02);
+            high[c] = FindQuantile(std::move(values), isColour ? 1.0 : 0.98);
         }
     }
-    bool const isUnit = _map.averaging != Averaging::Plain;
-    if (isUnit) low.fill(-1.0f), high.fill(1.0f);
+    if (_map.averaging != Averaging::Plain) {
+        low.fill(isLine ? 0.0f : -1.0f);
+        high.fill(1.0f);
+    }
 
     Picture picture;
     picture.width = std::max(_width, 128);
