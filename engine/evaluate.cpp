@@ -1,6 +1,7 @@
 #include "engine/evaluate.h"
 
 #include <charconv>
+#include <cmath>
 #include <iterator>
 #include <memory>
 #include <numeric>
@@ -64,7 +65,9 @@ public:
         if (parameters.HasSubFaces()) {
             double const coord[2] = {place.s, place.t};
             double local[2];
-            isInside = isIn(place.s, 1e6) && isIn(place.t, 1e6);
+            // Tiles lie in rows of as many columns as make them roughly square.
+            double const numColumns = std::ceil(std::sqrt(static_cast<double>(faceSize)));
+            isInside = isIn(place.s, numColumns) && isIn(place.t, numColumns) && std::floor(place.s) < numColumns;
             if (isInside) {
                 place.domain = parameters.ConvertCoordToNormalizedSubFace(coord, local);
                 place.s = local[0];
@@ -78,7 +81,7 @@ public:
         if (!isInside) {  // NaN comes here too
             throw Error(ErrorCode::BadMesh,
                         fmt::format("{}: row {} (line {}): ({}, {}) lies outside face {}, which has {} corners", _path, row,
-                                    row + 2, _places.s[row], _places.t[row], _places.faces[row], faceSize));
+                                    _places.lines[row], _places.s[row], _places.t[row], _places.faces[row], faceSize));
         }
         return place;
     }
@@ -129,6 +132,7 @@ PlaceList ReadPlaces(std::string const& path) {
         places.faces.push_back(face);
         places.s.push_back(s);
         places.t.push_back(t);
+        places.lines.push_back(lineNumber);
     }
     if (columns[0] < 0) refuse("the file is empty; a header face,s,t is needed");
     return places;
@@ -144,7 +148,7 @@ std::string EvaluatePlaces(Scene const& scene, Far::TopologyRefiner const& refin
         Index const face = places.faces[row];
         if (face < 0 || face >= surface.GetNumFaces()) {
             throw Error(ErrorCode::BadMesh, fmt::format("{}: row {} (line {}): face {} does not exist; faces are 0 to {}", path,
-                                                        row, row + 2, face, surface.GetNumFaces() - 1));
+                                                        row, places.lines[row], face, surface.GetNumFaces() - 1));
         }
         domains[row] = mapper.Map(row, scene.cage.faceSizes[face]);
     }

@@ -14,6 +14,7 @@ namespace limn::engine {
 struct PlaceList {
     std::vector<Index> faces;
     std::vector<double> s, t;
+    std::vector<size_t> lines;  ///< of the file
 };
 
 /// Reads `face,s,t` lines with a header. \throws Error BadMesh, as "FILE:LINE: ..."; Io

@@ -188,23 +188,30 @@ private:
     std::vector<Defect> _defects;
 };
 
-/// Marks faces whose texture polygons share samples of a 512 x 512 grid per tile.
+/// Marks faces whose texture polygons share samples of a 512 x 512 grid per tile. Tiles are looked at one
+/// after another, so that memory holds one.
 class OverlapFinder {
 public:
+    using Polygon = std::vector<std::array<double, 2>>;
+
     explicit OverlapFinder(size_t numFaces) : _overlaps(numFaces, 0) {}
 
-    void Add(Index face, std::vector<std::array<double, 2>> const& polygon) {
+    void StartTile(int tileU, int tileV) {
+        _tileU = tileU;
+        _tileV = tileV;
+        _owners.assign(kSize * kSize, -1);
+    }
+
+    /// Adds the part of a face's polygon that lies in the tile.
+    void Add(Index face, Polygon const& polygon) {
         double minV = 1e300, maxV = -1e300;
         for (auto const& p : polygon) {
             minV = std::min(minV, p[1]);
             maxV = std::max(maxV, p[1]);
         }
-        if (!(std::abs(minV) < 1e4 && std::abs(maxV) < 1e4)) return;
-        // Samples at odd offsets, so that edges on a texel grid do not run through them.
-        int const first = static_cast<int>(std::ceil(minV * kGrid - kOffset));
-        int const last = static_cast<int>(std::floor(maxV * kGrid - kOffset));
+        int const first = ToSample(minV - _tileV, kOffsetV), last = ToSample(maxV - _tileV, kOffsetV) - 1;
         for (int row = first; row <= last; ++row) {
-            double const v = (row + kOffset) / kGrid;
+            double const v = _tileV + (row + kOffsetV) / kSize;
             _crossings.clear();
             for (size_t i = 0; i < polygon.size(); ++i) {
                 auto const& a = polygon[i];
@@ -215,10 +222,8 @@ public:
             }
             std::sort(_crossings.begin(), _crossings.end());
             for (size_t i = 0; i + 1 < _crossings.size(); i += 2) {
-                if (!(std::abs(_crossings[i]) < 1e4 && std::abs(_crossings[i + 1]) < 1e4)) continue;
-                int const from = static_cast<int>(std::ceil(_crossings[i] * kGrid - kOffset));
-                int const to = static_cast<int>(std::floor(_crossings[i + 1] * kGrid - kOffset));
-                for (int column = from; column <= to; ++column) Claim(face, row, column);
+                int const from = ToSample(_crossings[i] - _tileU, kOffsetU), to = ToSample(_crossings[i + 1] - _tileU, kOffsetU);
+                for (int column = from; column < to; ++column) Claim(face, row, column);
             }
         }
     }
@@ -226,49 +231,63 @@ public:
     size_t GetCount() const { return static_cast<size_t>(std::count(_overlaps.begin(), _overlaps.end(), 1)); }
 
 private:
-    static constexpr double kGrid = 512.0, kOffset = 0.4142;
+    static constexpr int kSize = 512;
+    // Samples lie on no simple fraction and on no diagonal of the texel grid, where layouts have their edges.
+    static constexpr double kOffsetU = 0.41421356, kOffsetV = 0.73205081;
 
-    static int FloorDivide(int a) { return a >= 0 ? a / 512 : -((511 - a) / 512); }
+    /// The first sample at or after a coordinate of the tile, within 0 .. kSize. Spans end before theirs, so
+    /// that a sample on a shared edge belongs to one side.
+    static int ToSample(double x, double offset) {
+        return static_cast<int>(std::ceil(std::clamp(x * kSize - offset, 0.0, static_cast<double>(kSize))));
+    }
 
     void Claim(Index face, int row, int column) {
-        int const tileV = FloorDivide(row), tileU = FloorDivide(column);
-        auto& tile = _tiles[{tileU, tileV}];
-        if (tile.empty()) tile.assign(512 * 512, -1);
-        Index& owner = tile[static_cast<size_t>(row - tileV * 512) * 512 + (column - tileU * 512)];
+        Index& owner = _owners[static_cast<size_t>(row * kSize + column)];
         if (owner >= 0 && owner != face) _overlaps[owner] = _overlaps[face] = 1;
         else owner = face;
     }
 
-    std::map<std::pair<int, int>, std::vector<Index>> _tiles;
+    int _tileU = 0, _tileV = 0;
+    std::vector<Index> _owners;
     std::vector<char> _overlaps;
     std::vector<double> _crossings;
 };
+
+OverlapFinder::Polygon GetTexturePolygon(Scene const& scene, Index const* values, int size) {
+    OverlapFinder::Polygon polygon;
+    for (int i = 0; i < size; ++i) polygon.push_back({scene.uvs[2 * values[i]], scene.uvs[2 * values[i] + 1]});
+    return polygon;
+}
+
+double GetSignedArea(OverlapFinder::Polygon const& polygon) {
+    double area = 0.0;
+    auto const& o = polygon[0];
+    for (size_t i = 1; i + 1 < polygon.size(); ++i) {
+        auto const &a = polygon[i], &b = polygon[i + 1];
+        area += 0.5 * ((a[0] - o[0]) * (b[1] - o[1]) - (b[0] - o[0]) * (a[1] - o[1]));
+    }
+    return area;
+}
 
 UVInfo DescribeUVs(Scene const& scene) {
     UVInfo info;
     info.present = scene.HasUVs();
     if (!info.present) return info;
     std::set<int> tiles;
-    OverlapFinder overlaps(scene.cage.faceSizes.size());
+    std::map<int, std::vector<std::pair<Index, size_t>>> facesOfTile;  // with their first corner
+    Index const* const values = scene.cage.fvarChannels[0].valueIndices.data();
     size_t corner = 0;
-    std::vector<std::array<double, 2>> polygon;
     for (Index face = 0; face < scene.cage.GetNumFaces(); ++face) {
-        polygon.clear();
+        int const size = scene.cage.faceSizes[face];
+        auto const polygon = GetTexturePolygon(scene, values + corner, size);
         double minU = 1e300, maxU = -1e300, minV = 1e300, maxV = -1e300;
-        for (int i = 0; i < scene.cage.faceSizes[face]; ++i, ++corner) {
-            Index const value = scene.cage.fvarChannels[0].valueIndices[corner];
-            polygon.push_back({scene.uvs[2 * value], scene.uvs[2 * value + 1]});
-            minU = std::min(minU, polygon.back()[0]);
-            maxU = std::max(maxU, polygon.back()[0]);
-            minV = std::min(minV, polygon.back()[1]);
-            maxV = std::max(maxV, polygon.back()[1]);
+        for (auto const& [u, v] : polygon) {
+            minU = std::min(minU, u);
+            maxU = std::max(maxU, u);
+            minV = std::min(minV, v);
+            maxV = std::max(maxV, v);
         }
-        double area = 0.0;
-        for (size_t i = 0; i < polygon.size(); ++i) {
-            auto const& a = polygon[i];
-            auto const& b = polygon[(i + 1) % polygon.size()];
-            area += 0.5 * ((a[0] - polygon[0][0]) * (b[1] - polygon[0][1]) - (b[0] - polygon[0][0]) * (a[1] - polygon[0][1]));
-        }
+        double const area = GetSignedArea(polygon);
         bool const isFlat = std::abs(area) <= 1e-12;
         info.zeroAreaFaces += isFlat;
         info.flippedFaces += !isFlat && area < 0.0;
@@ -277,12 +296,24 @@ UVInfo DescribeUVs(Scene const& scene) {
         if (isInRange) {
             // The tile of the middle: borders belong to both sides, as do faces a hair over them.
             int const u = std::min(9, static_cast<int>(0.5 * (minU + maxU)));
-            int const v = static_cast<int>(0.5 * (minV + maxV));
+            int const v = std::min(899, static_cast<int>(0.5 * (minV + maxV)));
             tiles.insert(1001 + u + 10 * v);
+            for (int row = static_cast<int>(minV); !isFlat && row <= std::min(899, static_cast<int>(maxV)); ++row) {
+                for (int column = static_cast<int>(minU); column <= std::min(9, static_cast<int>(maxU)); ++column) {
+                    facesOfTile[1001 + column + 10 * row].emplace_back(face, corner);
+                }
+            }
         }
-        if (!isFlat) overlaps.Add(face, polygon);
+        corner += static_cast<size_t>(size);
     }
     info.tiles.assign(tiles.begin(), tiles.end());
+    OverlapFinder overlaps(scene.cage.faceSizes.size());
+    for (auto const& [tile, faces] : facesOfTile) {
+        overlaps.StartTile((tile - 1001) % 10, (tile - 1001) / 10);
+        for (auto const& [face, first] : faces) {
+            overlaps.Add(face, GetTexturePolygon(scene, values + first, scene.cage.faceSizes[face]));
+        }
+    }
     info.overlapFaces = overlaps.GetCount();
     return info;
 }

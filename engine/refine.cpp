@@ -78,11 +78,14 @@ std::vector<Index> FindBaseFaces(Far::TopologyRefiner const& refiner) {
     return base;
 }
 
-/// Tags as the last level has them. Boundaries are sharp by rule and need none.
+/// Tags as the last level has them. Boundaries are sharp by rule and need none, unless the rule gives them
+/// no surface, where a tag tells which of them have one.
 void CopyTags(Level const& level, Sdc::Options::VtxBoundaryInterpolation boundary, far_ext::ControlMesh& cage) {
+    bool const isBoundaryByRule = boundary != Sdc::Options::VTX_BOUNDARY_NONE;
     for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
         float const sharpness = level.GetEdgeSharpness(edge);
-        if (sharpness <= 0.0f || level.IsEdgeBoundary(edge) || level.IsEdgeNonManifold(edge)) continue;
+        bool const isByRule = (isBoundaryByRule && level.IsEdgeBoundary(edge)) || level.IsEdgeNonManifold(edge);
+        if (sharpness <= 0.0f || isByRule) continue;
         auto const ends = level.GetEdgeVertices(edge);
         cage.creaseVertexPairs.insert(cage.creaseVertexPairs.end(), {ends[0], ends[1]});
         cage.creaseSharpness.push_back(sharpness);

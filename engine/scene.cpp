@@ -24,6 +24,7 @@ std::vector<char> SelectGroups(Scene const& scene, std::vector<std::string> cons
             auto const found = std::find(groups.names.begin(), groups.names.end(), name);
             if (found == groups.names.end()) continue;
             known = true;
+            if (groups.faceGroup.empty()) continue;  // named, but no face follows
             Index const group = static_cast<Index>(found - groups.names.begin());
             for (size_t face = 0; face < selected.size(); ++face) {
                 if (groups.faceGroup[face] == group) selected[face] = 1;

@@ -27,16 +27,19 @@ constexpr int GetNumChannels(Quantity quantity) {
 /// readable and writable up to the next multiple of kSurfaceLanes.
 inline constexpr int kSurfaceLanes = 16;
 
+/// Real is float, or double where float would lose the second derivatives' digits: in pieces deep at an
+/// extraordinary vertex, where they shrink against the first ones, and on triangles' quartics.
+template <class Real>
 struct SurfaceBatch {
-    float const* coefficients;  ///< [3][16] (Loop: [3][15]), see patch_polynomial.h
-    float const* x;             ///< about the piece's centre
-    float const* y;
+    Real const* coefficients;  ///< [3][16] (Loop: [3][15]), see patch_polynomial.h
+    Real const* x;             ///< about the piece's centre
+    Real const* y;
     int count;
     float scale;        ///< d(x)/d(s), for Tangents
     float orientation;  ///< +1, or -1 to turn the normal round
     float* out;         ///< planes: out[channel * stride + i]
     size_t stride;
-    unsigned* degenerate;  ///< one per sample: 1 where float finds no safe tangent plane, see below
+    unsigned* degenerate;  ///< one per sample: 1 where no safe tangent plane is found, see below
 };
 
 /// Evaluates a batch (bake.md, "What is measured at a point").
@@ -44,7 +47,8 @@ struct SurfaceBatch {
 /// A sample with |x_s x x_t|^2 < 1e-10 |x_s|^2 |x_t|^2 is flagged; its outputs are finite and to be
 /// replaced. The same bits on every CPU: one source, compiled per instruction set without
 /// contraction or library calls, and chosen once at start.
-void EvaluateSurface(SurfaceBatch const& batch, Quantity quantity, bool isTriangle);
+void EvaluateSurface(SurfaceBatch<float> const& batch, Quantity quantity, bool isTriangle);
+void EvaluateSurface(SurfaceBatch<double> const& batch, Quantity quantity, bool isTriangle);
 
 /// One texture-space Newton problem per lane: find (x, y) with map(x, y) = target.
 struct InversionBatch {

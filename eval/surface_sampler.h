@@ -9,8 +9,9 @@
 
 namespace limn::eval {
 
-/// Evaluates many samples of one face in float, through the batched kernels; the few that float
-/// cannot do (next to an irregular corner, without tangent plane) are done in double.
+/// Evaluates many samples of one face through the batched kernels, in float, or in double where curvature
+/// needs it (deep pieces, triangles); the few that no batch can do (next to an irregular corner, without
+/// tangent plane) one by one.
 ///
 /// Channels  those of the quantity (SurfaceChannel), then the tree's channels from 3 on as values.
 /// Threads   one per thread, with its own tree
@@ -46,9 +47,17 @@ private:
     static constexpr size_t kStride = kBlock + kSurfaceLanes;
 
     bool NeedsCurvature() const { return _quantity >= Quantity::Curvature; }
-    void LoadCoefficients(PatchPoint const& patch);
+    template <class Real>
+    struct Lanes {
+        std::vector<Real> coefficients, x, y;
+    };
+
+    bool NeedsDouble(PatchPoint const& patch) const;
+    template <class Real>
+    void LoadCoefficients(PatchPoint const& patch, Lanes<Real>& lanes);
     /// Fills _planes with one block of a run; samples lie at x, y of the loaded piece.
-    void EvaluateBlock(PatchRun const& run, size_t first, size_t count, int domain,
+    template <class Real>
+    void EvaluateBlock(Lanes<Real>& lanes, PatchRun const& run, size_t first, size_t count, int domain,
                        std::span<double const> s, std::span<double const> t);
     void EvaluateExactly(int domain, double s, double t, size_t column);
 
@@ -58,7 +67,9 @@ private:
     int _numChannels;
     Index _face = -1;
     Counts _counts;
-    std::vector<float> _coefficients, _planes, _x, _y;
+    std::vector<float> _planes;
+    Lanes<float> _float;
+    Lanes<double> _double;
     std::vector<unsigned> _degenerate;
     std::vector<int> _near;
 };
@@ -71,10 +82,13 @@ void SurfaceSampler::Evaluate(int domain, std::span<double const> s, std::span<d
     _tree.ForEachPiece(
         domain, s, t, depth,
         [&](PatchRun const& run) {
-            LoadCoefficients(run.patch);
+            bool const isDouble = NeedsDouble(run.patch);
+            if (isDouble) LoadCoefficients(run.patch, _double);
+            else LoadCoefficients(run.patch, _float);
             for (size_t first = 0; first < run.samples.size(); first += kBlock) {
                 size_t const count = std::min(kBlock, run.samples.size() - first);
-                EvaluateBlock(run, first, count, domain, s, t);
+                if (isDouble) EvaluateBlock(_double, run, first, count, domain, s, t);
+                else EvaluateBlock(_float, run, first, count, domain, s, t);
                 visit(run.samples.subspan(first, count), _planes.data(), kStride);
             }
         },

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <set>
@@ -38,7 +38,7 @@ std::vector<int> FindTiles(BandBaker& baker, Scene const& scene, BakeOptions con
         if (!baker.IsBaked(face)) continue;
         UVBounds const& b = baker.GetBounds(face);
         if (baker.LeavesUdimRange(face)) outOfRange.push_back(face);
-        if (b.minU > 1.0f || b.minV > 1.0f) elsewhere.push_back(face);
+        if (b.minU > 0.9999f || b.minV > 0.9999f) elsewhere.push_back(face);
         auto const low = [](float x, float most) { return static_cast<int>(std::floor(std::clamp(x, 0.0f, most))); };
         for (int v = low(b.minV, 899.0f); v <= low(b.maxV, 899.0f); ++v) {
             for (int u = low(b.minU, 9.0f); u <= low(b.maxU, 9.0f); ++u) tiles.insert(1001 + u + 10 * v);
@@ -152,7 +152,7 @@ public:
             output.width = options.width;
             output.height = options.height;
             auto const attributes = MakeAttributes(options, layouts[f], scene, other);
-            output.wasSkipped = options.skipExisting && IsUpToDate(output.path, attributes);
+            output.wasSkipped = options.skipExisting && IsUpToDate(output.path, attributes) && HasPreviews(f);
             if (!output.wasSkipped) Open(f, attributes);
         }
     }
@@ -166,6 +166,13 @@ public:
     void Finish(BakeReport& report);
 
 private:
+    bool HasPreviews(size_t f) const {
+        for (size_t map = 0; _options.hasPreview && map < _layouts[f].maps.size(); ++map) {
+            if (!std::filesystem::exists(PreviewPath(_files[f].output.path, _layouts[f], map))) return false;
+        }
+        return true;
+    }
+
     void Open(size_t f, std::vector<std::pair<std::string, std::string>> const& attributes) {
         ExrSpec spec;
         spec.width = _options.width;

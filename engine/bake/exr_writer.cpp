@@ -258,6 +258,33 @@ void ExrWriter::Commit() {
     _file.Commit();
 }
 
+namespace {
+
+/// True if every tile of every level can be read: the file was not cut.
+bool HasAllChunks(exr_context_t context) {
+    int32_t levelsX = 0, levelsY = 0;
+    if (exr_get_tile_levels(context, 0, &levelsX, &levelsY) != EXR_ERR_SUCCESS) return false;
+    std::vector<uint8_t> bytes;
+    for (int level = 0; level < levelsX; ++level) {
+        int32_t width = 0, height = 0, tileWidth = 0, tileHeight = 0;
+        if (exr_get_level_sizes(context, 0, level, level, &width, &height) != EXR_ERR_SUCCESS ||
+            exr_get_tile_sizes(context, 0, level, level, &tileWidth, &tileHeight) != EXR_ERR_SUCCESS) {
+            return false;
+        }
+        for (int y = 0; y * tileHeight < height; ++y) {
+            for (int x = 0; x * tileWidth < width; ++x) {
+                exr_chunk_info_t chunk;
+                if (exr_read_tile_chunk_info(context, 0, x, y, level, level, &chunk) != EXR_ERR_SUCCESS) return false;
+                bytes.resize(chunk.packed_size);
+                if (exr_read_chunk(context, 0, &chunk, bytes.data()) != EXR_ERR_SUCCESS) return false;
+            }
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
 std::vector<std::pair<std::string, std::string>> ReadExrAttributes(std::string const& path,
                                                                    std::string const& prefix) {
     std::vector<std::pair<std::string, std::string>> found;
@@ -265,6 +292,10 @@ std::vector<std::pair<std::string, std::string>> ReadExrAttributes(std::string c
     initializer.error_handler_fn = [](exr_const_context_t, exr_result_t, char const*) {};
     exr_context_t context = nullptr;
     if (exr_start_read(&context, path.c_str(), &initializer) != EXR_ERR_SUCCESS) return found;
+    if (!HasAllChunks(context)) {
+        exr_finish(&context);
+        return found;
+    }
     int32_t count = 0;
     exr_get_attribute_count(context, 0, &count);
     for (int32_t i = 0; i < count; ++i) {

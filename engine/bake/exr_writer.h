@@ -78,7 +78,7 @@ private:
 
 /// String attributes of an EXR file's header whose names start with `prefix`.
 ///
-/// \return empty if the file does not exist or is no EXR file
+/// \return empty if the file does not exist, is no EXR file or ends before its last chunk
 std::vector<std::pair<std::string, std::string>> ReadExrAttributes(std::string const& path,
                                                                    std::string const& prefix);
 

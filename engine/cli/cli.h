@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "engine/io/file.h"
 #include "engine/job.h"
 #include "engine/scene.h"
 #include "far_ext/refiner.h"
@@ -58,8 +59,12 @@ private:
     CommonOptions const& _common;
     engine::Job _job;
     nlohmann::json _report;
+    std::unique_ptr<engine::AtomicFile> _reportFile;
     std::chrono::steady_clock::time_point _start;
 };
+
+/// Writes data to stdout. \throws Error Io, e.g. on a full disk
+void PrintData(std::string const& text);
 
 /// A verb: its subcommand of the command line, and what to do. Returns the exit status.
 struct Verb {

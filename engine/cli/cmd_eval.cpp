@@ -1,5 +1,3 @@
-#include <cstdio>
-
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
@@ -28,7 +26,7 @@ Verb AddEval(CLI::App& app) {
                                            context.GetCommon().IsDouble(), numWithout);
                 context.GetReport()["places"] = places.faces.size();
                 context.GetReport()["places_without_limit"] = numWithout;
-                if (a->output.empty()) std::fwrite(text.data(), 1, text.size(), stdout);
+                if (a->output.empty()) PrintData(text);
                 else engine::WriteFileAtomically(a->output, text);
                 return kDone;
             }};

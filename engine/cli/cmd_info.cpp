@@ -1,5 +1,3 @@
-#include <cstdio>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -95,8 +93,8 @@ Verb AddInfo(CLI::App& app) {
                 auto const [scene, refiner] = context.Load(a->mesh, Context::Defects::Keep);
                 auto const info = engine::DescribeMesh(scene, refiner->GetLevel(0));
                 auto json = ToJson(info, scene.cage);
-                std::string const text = a->asJson ? json.dump(2) + "\n" : ToText(scene, info);
-                std::fwrite(text.data(), 1, text.size(), stdout);
+                std::string const text = a->asJson ? json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n" : ToText(scene, info);
+                PrintData(text);
                 context.GetReport().update(json);
                 return kDone;
             }};

@@ -40,6 +40,10 @@ void ApplyOptions(CommonOptions const& common, Scene& scene) {
 
 Context::Context(CommonOptions const& common, std::string command, std::vector<std::string> arguments)
     : _common(common), _job(ChooseProgress(common), common.isQuiet), _start(std::chrono::steady_clock::now()) {
+    // Opened before the work, so that a report that cannot be written is known before there is output.
+    if (!common.reportPath.empty() && common.reportPath != "-") {
+        _reportFile = std::make_unique<engine::AtomicFile>(common.reportPath);
+    }
     _report["limn_version"] = GetVersion();
     _report["command"] = command;
     _report["options"] = std::move(arguments);
@@ -76,6 +80,11 @@ void Context::KeepStdoutForData(bool writesToStdout) const {
     }
 }
 
+void PrintData(std::string const& text) {
+    bool const isWritten = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+    if (!isWritten) engine::ThrowIoError("stdout", "cannot be written");
+}
+
 void Context::WriteReport() {
     if (_common.reportPath.empty()) return;
     _report["warnings"] = _job.GetWarnings();
@@ -83,9 +92,10 @@ void Context::WriteReport() {
     _report["seconds"] = std::round(elapsed.count() * 1e3) / 1e3;
     std::string const text = _report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
     if (_common.reportPath == "-") {
-        std::fwrite(text.data(), 1, text.size(), stdout);
+        PrintData(text);
     } else {
-        engine::WriteFileAtomically(_common.reportPath, text);
+        _reportFile->Write(text);
+        _reportFile->Commit();
     }
 }
 

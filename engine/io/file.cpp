@@ -198,18 +198,20 @@ void AtomicFile::Commit() {
     _isCommitted = true;
 }
 
+void AtomicFile::Write(std::string_view bytes) {
+    Descriptor const file{::open(_temporary.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC)};
+    if (file.fd < 0) ThrowIoError(_path, "cannot be written");
+    while (!bytes.empty()) {
+        ssize_t const count = ::write(file.fd, bytes.data(), bytes.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) ThrowIoError(_path, "cannot be written");
+        bytes.remove_prefix(static_cast<size_t>(count));
+    }
+}
+
 void WriteFileAtomically(std::string const& path, std::string_view bytes) {
     AtomicFile output(path);
-    {
-        Descriptor const file{::open(output.GetTemporaryPath().c_str(), O_WRONLY | O_CLOEXEC)};
-        if (file.fd < 0) ThrowIoError(path, "cannot be written");
-        while (!bytes.empty()) {
-            ssize_t const count = ::write(file.fd, bytes.data(), bytes.size());
-            if (count < 0 && errno == EINTR) continue;
-            if (count < 0) ThrowIoError(path, "cannot be written");
-            bytes.remove_prefix(static_cast<size_t>(count));
-        }
-    }
+    output.Write(bytes);
     output.Commit();
 }
 

@@ -46,6 +46,9 @@ public:
     /// Where to write until Commit.
     std::string const& GetTemporaryPath() const { return _temporary; }
 
+    /// Appends bytes. \throws Error Io
+    void Write(std::string_view bytes);
+
     /// Flushes and renames. \throws Error Io
     void Commit();
 

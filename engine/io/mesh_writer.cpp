@@ -1,7 +1,10 @@
 #include "engine/io/mesh_writer.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <iterator>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -160,6 +163,13 @@ private:
 }  // namespace
 
 void WriteMesh(std::string const& path, Scene const& scene, bool isDouble, std::vector<std::string>* warnings) {
+    double const largest = isDouble ? std::numeric_limits<double>::max() : std::numeric_limits<float>::max();
+    auto const isWritable = [&](double value) { return std::abs(value) <= largest; };
+    if (!std::all_of(scene.positions.begin(), scene.positions.end(), isWritable) ||
+        !std::all_of(scene.uvs.begin(), scene.uvs.end(), isWritable)) {
+        throw Error(ErrorCode::BadMesh, fmt::format("'{}': a coordinate is no number or does not fit a {}", path,
+                                                    isDouble ? "double" : "float; use --precision double"));
+    }
     if (path.ends_with(".obj")) {
         if (warnings && !scene.primvars.empty()) warnings->push_back(path + ": OBJ holds no primvars; they are left out");
         WriteFileAtomically(path, ObjText(scene, isDouble).Make());

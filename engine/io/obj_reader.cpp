@@ -15,7 +15,7 @@ constexpr size_t kMaxElements = std::numeric_limits<Index>::max() / 4;
 /// Accumulates one OBJ file; one method per statement.
 class ObjReader {
 public:
-    ObjReader(std::string_view text, Scene& scene) : _scan(text, scene.path), _scene(scene) {
+    ObjReader(std::string_view text, Scene& scene) : _scan(WithoutByteOrderMark(text), scene.path), _scene(scene) {
         _scene.positions.reserve(text.size() / 12);
         _scene.cage.faceVertices.reserve(text.size() / 16);
     }
@@ -37,6 +37,10 @@ public:
     }
 
 private:
+    static std::string_view WithoutByteOrderMark(std::string_view text) {
+        return text.starts_with("\xef\xbb\xbf") ? text.substr(3) : text;
+    }
+
     Index NumVertices() const { return static_cast<Index>(_scene.positions.size() / 3); }
     Index NumUVs() const { return static_cast<Index>(_scene.uvs.size() / 2); }
 
@@ -48,6 +52,7 @@ private:
 
     void ReadUV() {
         if (_scene.uvs.size() / 2 >= kMaxElements) _scan.Refuse("too many texture vertices");
+        _scan.DropComment();
         double const u = _scan.Number("u");
         double const v = _scan.AtEndOfLine() ? 0.0 : _scan.Number("v");  // v may be left out
         _scene.uvs.insert(_scene.uvs.end(), {u, v});
@@ -64,7 +69,7 @@ private:
         long long const index = value > 0 ? value - 1 : count + value;
         if (code != std::errc() || value == 0 || index < 0 || index >= count) {
             _scan.Refuse(fmt::format("a corner's {} index is {}; {}", what,
-                                     std::string_view(at, static_cast<size_t>(stop - at)),
+                                     TextScanner::Quote({at, static_cast<size_t>(stop - at)}),
                                      count == 0 ? fmt::format("no {} stands before this line", what)
                                                 : fmt::format("1 to {} or -{} to -1 are possible here",
                                                               count, count)));

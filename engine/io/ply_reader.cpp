@@ -185,6 +185,7 @@ private:
     }
 
     void SkipElement(Element const& element) {
+        CheckRoom(element);
         for (size_t i = 0; i < element.count; ++i) {
             BeginRow(element, i);
             for (Property const& property : element.properties) {
@@ -230,7 +231,9 @@ private:
 
     size_t FindPrimvar(std::string const& name, int numChannels) {
         for (size_t i = 0; i < _scene.primvars.size(); ++i) {
-            if (_scene.primvars[i].name == name) return i;
+            if (_scene.primvars[i].name != name) continue;
+            if (_scene.primvars[i].numChannels == numChannels) return i;
+            Refuse(fmt::format("two vertex properties both make the primvar '{}'; rename one", name));
         }
         _scene.primvars.push_back({name, numChannels, {}});
         return _scene.primvars.size() - 1;
@@ -262,8 +265,9 @@ private:
         for (size_t k = 0; k < count; ++k) {
             double const value = ReadValue(property.type, property.name.c_str());
             size_t const channel = static_cast<size_t>(target.channel);
-            if (target.kind != Target::Nowhere && !std::isfinite(value)) {
-                Refuse(fmt::format("property '{}' is {}; a finite number is needed", property.name, value));
+            if (target.kind != Target::Nowhere && !(std::abs(value) <= TextScanner::kLargest)) {
+                Refuse(fmt::format("property '{}' is {}; a number up to {:g} is needed", property.name, value,
+                                   TextScanner::kLargest));
             }
             if (target.kind == Target::Position) _scene.positions[3 * vertex + channel] = value;
             if (target.kind == Target::Texture) _scene.uvs[2 * vertex + channel] = value;
@@ -275,19 +279,26 @@ private:
         }
     }
 
+    static bool IsIndexList(Property const& property) {
+        return property.countType && (property.name == "vertex_indices" || property.name == "vertex_index");
+    }
+
     /// A count in a header is a claim; what it needs at least must be in the file.
     void CheckRoom(Element const& element) const {
-        if (_scan.GetRest().size() / 2 < element.count) {
+        size_t rowSize = 0;  // least bytes of a row: a digit and a space per word, or the sizes of the types
+        for (Property const& property : element.properties) {
+            bool const isText = _format == Format::Text;
+            rowSize += isText ? 2 : SizeOf(property.countType ? *property.countType : property.type);
+        }
+        size_t const rest = _format == Format::Text ? _scan.GetRest().size() + 1 : _bytes.size() - _at;
+        if (rowSize == 0 ? element.count > 0 : rest / rowSize < element.count) {
             Refuse(fmt::format("the file is too short for {} of element '{}'", element.count, element.name));
         }
     }
 
     void ReadFaces(Element const& element) {
-        bool const hasIndices =
-            std::any_of(element.properties.begin(), element.properties.end(), [](Property const& property) {
-                return property.countType && (property.name == "vertex_indices" || property.name == "vertex_index");
-            });
-        if (!hasIndices) Refuse("element face has no list 'vertex_indices'");
+        auto const numLists = std::count_if(element.properties.begin(), element.properties.end(), IsIndexList);
+        if (numLists != 1) Refuse(fmt::format("element face has {} lists 'vertex_indices'; one is needed", numLists));
         if (_scene.positions.empty()) Refuse("the faces stand before the vertices, or there are no vertices");
         CheckRoom(element);
         auto& cage = _scene.cage;
@@ -296,7 +307,7 @@ private:
             size_t size = 0;
             std::vector<double> texcoords;
             for (Property const& property : element.properties) {
-                bool const isIndices = property.countType && (property.name == "vertex_indices" || property.name == "vertex_index");
+                bool const isIndices = IsIndexList(property);
                 bool const isTexture = property.countType && property.name == "texcoord";
                 size_t const count = property.countType ? ReadCount(property) : 1;
                 if (isIndices) size = count;
@@ -321,7 +332,9 @@ private:
     }
 
     double CheckFinite(double value) const {
-        if (!std::isfinite(value)) Refuse(fmt::format("a texture coordinate is {}; a finite number is needed", value));
+        if (!(std::abs(value) <= TextScanner::kLargest)) {
+            Refuse(fmt::format("a texture coordinate is {}; a number up to {:g} is needed", value, TextScanner::kLargest));
+        }
         return value;
     }
 
@@ -341,6 +354,10 @@ private:
         auto& cage = _scene.cage;
         if (cage.faceSizes.empty()) {
             throw Error(ErrorCode::BadMesh, fmt::format("{}: the file has no faces; limn needs polygons", _scene.path));
+        }
+        if (!_cornerUVs.empty() && _numFacesWithoutUVs != 0) {
+            _scene.warnings.push_back(fmt::format("{}: {} of {} faces have no 'texcoord', so those of the others are not used",
+                                                  _scene.path, _numFacesWithoutUVs, cage.faceSizes.size()));
         }
         if (!_cornerUVs.empty() && _numFacesWithoutUVs == 0) {
             MergeCornerUVs();

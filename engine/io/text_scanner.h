@@ -62,12 +62,15 @@ public:
         double value = 0.0;
         auto const [stop, code] = std::from_chars(begin, end, value);
         bool const isWhole = stop == end || IsSpace(*stop);
-        if (code == std::errc() && isWhole && std::isfinite(value)) {
+        if (code == std::errc() && isWhole && std::abs(value) <= kLargest) {
             _line.remove_prefix(static_cast<size_t>(stop - _line.data()));
             return value;
         }
-        RefuseNumber(what, code);
+        RefuseNumber(what, code, value);
     }
+
+    /// Numbers beyond this would pass the range of float somewhere between a file and its maps.
+    static constexpr double kLargest = 1e30;
 
     [[noreturn]] void Refuse(std::string const& message) const {
         throw Error(ErrorCode::BadMesh, fmt::format("{}:{}: {}", _path, _lineNumber, message));
@@ -97,11 +100,11 @@ private:
         while (!_line.empty() && IsSpace(_line.front())) _line.remove_prefix(1);
     }
 
-    [[noreturn]] void RefuseNumber(char const* what, std::errc code) {
+    [[noreturn]] void RefuseNumber(char const* what, std::errc code, double value) {
         std::string_view const word = Word();
         if (word.empty()) Refuse(fmt::format("{} is missing", what));
-        if (code == std::errc::result_out_of_range) {
-            Refuse(fmt::format("{} is {}; it does not fit a double", what, Quote(word)));
+        if (code == std::errc::result_out_of_range || (code == std::errc() && std::isfinite(value) && std::abs(value) > kLargest)) {
+            Refuse(fmt::format("{} is {}; at most {:g} in magnitude is possible", what, Quote(word), kLargest));
         }
         Refuse(fmt::format("{} is {}; a finite number is needed", what, Quote(word)));
     }

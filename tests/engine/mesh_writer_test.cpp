@@ -61,8 +61,8 @@ Scene MakeAwkward(bool isDouble) {
     for (double& value : scene.uvs) value = std::abs(number());
     using Float = std::numeric_limits<float>;
     using Double = std::numeric_limits<double>;
-    std::vector<double> const edges = isDouble ? std::vector<double>{Double::max(), Double::min(), -0.0, 1.0 / 3, 5e-324, 0.1}
-                                               : std::vector<double>{Float::max(), Float::min(), -0.0, 1.0f / 3, Float::denorm_min(), 0.1f};
+    std::vector<double> const edges = isDouble ? std::vector<double>{1e30, Double::min(), -0.0, 1.0 / 3, 5e-324, 0.1}
+                                               : std::vector<double>{9.99e29f, Float::min(), -0.0, 1.0f / 3, Float::denorm_min(), 0.1f};
     std::copy(edges.begin(), edges.end(), scene.positions.begin());
     if (!isDouble) {
         scene.positions = AsFloats(scene.positions);

@@ -71,6 +71,43 @@ TEST(SurfaceSampler, FloatAgreesWithDoubleOnARegularMesh) {
     EXPECT_LT(worst, 1e-6 * largest);
 }
 
+struct AccuracyCase {
+    Sdc::SchemeType scheme;
+    int valence;
+};
+class AccuracyAtVertex : public testing::TestWithParam<AccuracyCase> {};
+INSTANTIATE_TEST_SUITE_P(Fans, AccuracyAtVertex,
+                         testing::Values(AccuracyCase{Sdc::SCHEME_CATMARK, 3}, AccuracyCase{Sdc::SCHEME_CATMARK, 5},
+                                         AccuracyCase{Sdc::SCHEME_CATMARK, 8}, AccuracyCase{Sdc::SCHEME_LOOP, 3},
+                                         AccuracyCase{Sdc::SCHEME_LOOP, 6}, AccuracyCase{Sdc::SCHEME_LOOP, 9}));
+
+// At every depth: a sample at 2^-depth from the vertex has the curvature that double finds, to 2e-6 of its
+// own size. (Relative to the mesh's largest value the bound is 1e-6; at valence 3 the values are alike.)
+TEST_P(AccuracyAtVertex, CurvatureKeepsItsDigitsWithDepth) {
+    engine::Scene fan = test::MakeFan(GetParam().valence, GetParam().scheme, 0.1, 0.03);
+    for (size_t v = 0; v < fan.positions.size(); v += 3) {  // tilted and moved off the origin
+        double const x = fan.positions[v], z = fan.positions[v + 2];
+        fan.positions[v] = 5.0 + 0.8 * x - 0.6 * z;
+        fan.positions[v + 2] = -3.0 + 0.6 * x + 0.8 * z;
+    }
+    auto const refiner = far_ext::CreateRefiner(fan.cage);
+    LimitSurface const surface(*refiner);
+    FaceTree tree(surface, fan.positions, 3), reference(surface, fan.positions, 3);
+    SurfaceSampler sampler(tree, Quantity::Curvature, 1.0f);
+    sampler.Bind(0);
+    reference.Bind(0);
+    for (int depth = 1; depth <= 20; ++depth) {
+        std::vector<double> const s{std::ldexp(0.61, -depth)}, t{std::ldexp(0.35, -depth)};
+        auto const expected = eval::EvaluateSample(reference, 0, s[0], t[0], 1.0).curvature;
+        sampler.Evaluate(0, s, t, [&](std::span<int const>, float const* p, size_t stride) {
+            double const scale = std::max(std::abs(expected.k1), std::abs(expected.k2));
+            EXPECT_NEAR(static_cast<double>(p[eval::kK1 * stride]), expected.k1, 2e-6 * scale) << "depth " << depth;
+            EXPECT_NEAR(static_cast<double>(p[eval::kK2 * stride]), expected.k2, 2e-6 * scale) << "depth " << depth;
+            EXPECT_NEAR(static_cast<double>(p[eval::kMean * stride]), expected.mean, 2e-6 * scale) << "depth " << depth;
+        });
+    }
+}
+
 class SurfaceSamplerOnMesh : public testing::TestWithParam<char const*> {
 protected:
     engine::Scene Load() const {
