@@ -193,17 +193,16 @@ void FaceTree::Bind(Index face) {
             to = std::copy(from, from + part.length, to);
         }
     }
-    std::vector<double> const zero(static_cast<size_t>(_length), 0.0);
-    Recentre(_nodes[0], zero.data());
+    Recentre(_nodes[0], nullptr);
 }
 
-/// Makes the node's points relative to its first one, which becomes the origin.
+/// Makes the node's points relative to its first one, which becomes the origin; a root has no parent's.
 void FaceTree::Recentre(Node& node, double const* parentOrigin) {
     double* const points = &_values[node.points];
     double* const origin = &_values[node.origin];
     for (int c = 0; c < _length; ++c) {
         double const first = points[c];
-        origin[c] = parentOrigin[c] + first;
+        origin[c] = parentOrigin ? parentOrigin[c] + first : first;
         for (size_t i = 0; i < node.numPoints; ++i) points[i * _length + c] -= first;
     }
 }

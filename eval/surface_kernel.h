@@ -57,6 +57,7 @@ struct InversionBatch {
     double const* targetY;
     double startX, startY;       ///< where the first guess expands the map to second order
     double reach;                ///< guesses are kept this near to the start
+    double bend;                 ///< bound of the map's second derivatives per texel, squared inverse Jacobian
     double low, high;            ///< iterates are kept in this range
     double* x;                   ///< out: about the piece's centre
     double* y;
@@ -67,8 +68,8 @@ struct InversionBatch {
 
 inline constexpr int kInversionLanes = 8;
 
-/// Newton's method in double on all lanes, from a guess by the map's second-order expansion. A lane
-/// is done when its step starts below 1e-3 texel: convergence is quadratic, so it ends below 1e-5.
+/// Newton's method in double on all lanes, from a guess by the map's second-order expansion. A step from r
+/// texels off ends within bend / 2 * r^2; a lane is done with the step that is sure to end below 1e-5 texel.
 void InvertTextureMap(InversionBatch const& batch, bool isTriangle);
 
 }  // namespace limn::eval

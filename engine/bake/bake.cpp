@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <tbb/info.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
@@ -93,12 +93,15 @@ private:
         }
         if (_hasCoverage) std::copy_n(texels.coverage.data(), w, &buffer[_numPlanes * planeSize + at]);
         if (row % T != T - 1 && row != height - 1) return;
-        for (int tile = 0; tile * T < width; ++tile) {
+        std::vector<ExrTile> tiles(static_cast<size_t>((width + T - 1) / T));
+        tbb::parallel_for(size_t{0}, tiles.size(), [&](size_t tile) {
             std::vector<float const*> channels;
             for (int c = 0; c < numChannels; ++c) channels.push_back(&buffer[c * planeSize + tile * T]);
-            ExrTile const packed = _writer.Pack(level, tile, row / T, channels.data(), w);
-            _numClamped += packed.numClamped;
-            _writer.Write(packed);
+            tiles[tile] = _writer.Pack(level, static_cast<int>(tile), row / T, channels.data(), w);
+        });
+        for (ExrTile const& tile : tiles) {
+            _numClamped += tile.numClamped;
+            _writer.Write(tile);
         }
     }
 
@@ -193,7 +196,8 @@ private:
         }
     }
 
-    std::vector<std::vector<Index>> BinFaces(TileGrid const& grid) const;
+    using Blocks = std::vector<std::vector<Index>>;  // faces per Band::kBlockColumns columns
+    std::vector<Blocks> BinFaces(TileGrid const& grid) const;
     void Write(PackedBand const& band);
 
     int _tile;
@@ -206,21 +210,26 @@ private:
     bool _isAnyCovered = false;
 };
 
-/// Per band, the faces whose bounds reach a sample of it, in ascending order.
-std::vector<std::vector<Index>> TileJob::BinFaces(TileGrid const& grid) const {
+/// Per band and block of columns, the faces whose bounds reach a sample of it, in ascending order.
+std::vector<TileJob::Blocks> TileJob::BinFaces(TileGrid const& grid) const {
     int const numBands = (grid.height + Band::kRows - 1) / Band::kRows;
-    std::vector<std::vector<Index>> bins(static_cast<size_t>(numBands));
+    int const numBlocks = (grid.width + Band::kBlockColumns - 1) / Band::kBlockColumns;
+    std::vector<Blocks> bins(static_cast<size_t>(numBands), Blocks(static_cast<size_t>(numBlocks)));
     for (Index face = 0; face < _baker.GetNumFaces(); ++face) {
         if (!_baker.IsBaked(face)) continue;
         UVBounds const& b = _baker.GetBounds(face);
         // Samples lie up to half a texel beside a texel's centre, and a face covers 1e-4 beyond it.
         double const slack = 1.0;
-        if (grid.ToX(b.maxU) < -slack || grid.ToX(b.minU) > grid.width - 1 + slack) continue;
+        double const left = grid.ToX(b.minU) - slack, right = grid.ToX(b.maxU) + slack;
         double const top = grid.ToY(b.maxV) - slack, bottom = grid.ToY(b.minV) + slack;
-        if (!(bottom >= 0.0 && top <= grid.height - 1.0)) continue;
-        int const first = static_cast<int>(std::max(top, 0.0)) / Band::kRows;
-        int const last = static_cast<int>(std::min(bottom, grid.height - 1.0)) / Band::kRows;
-        for (int band = first; band <= last; ++band) bins[band].push_back(face);
+        if (!(right >= 0.0 && left <= grid.width - 1.0 && bottom >= 0.0 && top <= grid.height - 1.0)) continue;
+        int const firstBlock = static_cast<int>(std::max(left, 0.0)) / Band::kBlockColumns;
+        int const lastBlock = static_cast<int>(std::min(right, grid.width - 1.0)) / Band::kBlockColumns;
+        int const firstBand = static_cast<int>(std::max(top, 0.0)) / Band::kRows;
+        int const lastBand = static_cast<int>(std::min(bottom, grid.height - 1.0)) / Band::kRows;
+        for (int band = firstBand; band <= lastBand; ++band) {
+            for (int block = firstBlock; block <= lastBlock; ++block) bins[band][block].push_back(face);
+        }
     }
     return bins;
 }

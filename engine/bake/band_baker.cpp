@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <set>
 
@@ -156,7 +157,7 @@ bool BandBaker::LeavesUdimRange(Index face) {
     return false;
 }
 
-std::unique_ptr<Band> BandBaker::MakeBand(int index, TileGrid grid, std::vector<Index> const& faces) {
+std::unique_ptr<Band> BandBaker::MakeBand(int index, TileGrid grid, std::vector<std::vector<Index>> const& blocks) {
     CheckInterrupted();
     Worker& worker = LocalWorker();
     auto band = std::make_unique<Band>();
@@ -167,21 +168,20 @@ std::unique_ptr<Band> BandBaker::MakeBand(int index, TileGrid grid, std::vector<
     band->texels.Reset(firstRow, numRows, grid.width);
     band->isCovered.resize(numTexels);
     if (_options.samplesPerSide == 1) {
-        RasterSamples(worker, grid, faces, band->texels, band->planes.data());
+        RasterSamples(worker, grid, blocks, band->texels, band->planes.data());
         for (size_t i = 0; i < numTexels; ++i) band->isCovered[i] = band->texels.owner[i] >= 0;
     } else {
-        Supersample(worker, grid, faces, *band);
+        Supersample(worker, grid, blocks, *band);
     }
     FindRange(*band);
-    size_t covered = 0, overlaps = 0, failures = 0;
-    for (size_t i = 0; i < numTexels; ++i) {
-        covered += band->isCovered[i];
-        overlaps += band->texels.overlap[i];
-        failures += band->texels.failed[i] && !band->isCovered[i];
+    auto const count = [](std::vector<uint8_t> const& flags) {
+        return static_cast<size_t>(std::count(flags.begin(), flags.end(), 1));
+    };
+    _texelsCovered += count(band->isCovered);
+    _overlaps += count(band->texels.overlap);
+    if (std::memchr(band->texels.failed.data(), 1, numTexels)) {
+        for (size_t i = 0; i < numTexels; ++i) _newtonFailures += band->texels.failed[i] && !band->isCovered[i];
     }
-    _texelsCovered += covered;
-    _overlaps += overlaps;
-    _newtonFailures += failures;
     return band;
 }
 
@@ -195,22 +195,25 @@ void BandBaker::FindRange(Band& band) {
     }
 }
 
-void BandBaker::RasterSamples(Worker& worker, TileGrid const& grid, std::vector<Index> const& faces, TexelBand& texels,
-                              float* planes) {
+void BandBaker::RasterSamples(Worker& worker, TileGrid const& grid, std::vector<std::vector<Index>> const& blocks,
+                              TexelBand& texels, float* planes) {
     size_t const planeSize = texels.owner.size();
     size_t untilCheck = 0;
-    for (Index face : faces) {
-        if (untilCheck-- == 0) {
-            CheckInterrupted();
-            untilCheck = 256;
-        }
-        auto const& hits = worker.raster.Rasterise(face, grid, texels);
-        bool isBound = false;
-        for (int domain = 0; domain < _surface->GetNumDomains(face); ++domain) {
-            if (hits[domain].texel.empty()) continue;
-            if (!isBound) worker.sampler.Bind(face);
-            isBound = true;
-            EvaluateHits(worker, face, domain, hits[domain], planes, planeSize);
+    for (size_t block = 0; block < blocks.size(); ++block) {
+        int const firstColumn = static_cast<int>(block) * Band::kBlockColumns;
+        for (Index face : blocks[block]) {
+            if (untilCheck-- == 0) {
+                CheckInterrupted();
+                untilCheck = 256;
+            }
+            auto const& hits = worker.raster.Rasterise(face, grid, texels, firstColumn, Band::kBlockColumns);
+            bool isBound = false;
+            for (int domain = 0; domain < _surface->GetNumDomains(face); ++domain) {
+                if (hits[domain].texel.empty()) continue;
+                if (!isBound) worker.sampler.Bind(face);
+                isBound = true;
+                EvaluateHits(worker, face, domain, hits[domain], planes, planeSize);
+            }
         }
     }
 }
@@ -240,7 +243,8 @@ void BandBaker::EvaluateHits(Worker& worker, Index face, int domain, TexelHits c
 }
 
 /// Averages N x N ordered samples per texel over those that are covered.
-void BandBaker::Supersample(Worker& worker, TileGrid const& grid, std::vector<Index> const& faces, Band& band) {
+void BandBaker::Supersample(Worker& worker, TileGrid const& grid, std::vector<std::vector<Index>> const& blocks,
+                            Band& band) {
     int const n = _options.samplesPerSide;
     size_t const numTexels = band.GetNumTexels();
     std::vector<int> numHits(numTexels, 0);
@@ -255,7 +259,7 @@ void BandBaker::Supersample(Worker& worker, TileGrid const& grid, std::vector<In
             offset.offsetY = (j + 0.5) / n;
             worker.sampleTexels.Reset(band.texels.firstRow, band.texels.numRows, band.texels.width);
             sample.assign(band.planes.size(), 0.0f);
-            RasterSamples(worker, offset, faces, worker.sampleTexels, sample.data());
+            RasterSamples(worker, offset, blocks, worker.sampleTexels, sample.data());
             size_t plane = 0, line = 0;
             for (Map const& map : _maps) {
                 size_t const numChannels = static_cast<size_t>(map.GetNumChannels());

@@ -16,6 +16,7 @@ namespace limn::engine {
 /// A run of texel rows of one tile after evaluation, before padding.
 struct Band {
     static constexpr int kRows = ExrSpec::kTileSize;
+    static constexpr int kBlockColumns = 512;  ///< baked together: their values stay in the cache
 
     int index = 0;                   ///< rows [kRows * index, ...)
     TexelBand texels;
@@ -51,8 +52,8 @@ public:
     bool LeavesUdimRange(Index face);
 
     /// \param grid   of the tile, without sample offsets
-    /// \param faces  all that may cover a texel of the band, ascending
-    std::unique_ptr<Band> MakeBand(int index, TileGrid grid, std::vector<Index> const& faces);
+    /// \param blocks  per Band::kBlockColumns columns all faces that may cover a texel there, ascending
+    std::unique_ptr<Band> MakeBand(int index, TileGrid grid, std::vector<std::vector<Index>> const& blocks);
 
     /// Adds what was counted so far, and names the vertices samples were moved away from.
     void AddCounts(BakeReport& report, std::vector<std::string>& movedPlaces) const;
@@ -61,11 +62,11 @@ private:
     struct Worker;
 
     Worker& LocalWorker();
-    void RasterSamples(Worker& worker, TileGrid const& grid, std::vector<Index> const& faces, TexelBand& texels,
-                       float* planes);
+    void RasterSamples(Worker& worker, TileGrid const& grid, std::vector<std::vector<Index>> const& blocks,
+                       TexelBand& texels, float* planes);
     void EvaluateHits(Worker& worker, Index face, int domain, TexelHits const& hits, float* planes, size_t planeSize);
     static void FindRange(Band& band);
-    void Supersample(Worker& worker, TileGrid const& grid, std::vector<Index> const& faces, Band& band);
+    void Supersample(Worker& worker, TileGrid const& grid, std::vector<std::vector<Index>> const& blocks, Band& band);
     double FindMeanArea();
     std::string NamePlace(eval::SurfaceSampler::Place const& place) const;
 

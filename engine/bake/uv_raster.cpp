@@ -18,6 +18,15 @@ constexpr int kMaxNewtonSteps = 12;
 constexpr int kMaxDepth = 30;       // pieces below 2^-30 of a face are linear to any precision
 constexpr size_t kFlushAt = 1024;   // candidates per Newton batch
 
+/// Bound of how fast the map's Jacobian changes from texel to texel, about (x, y).
+double FindBend(TexturePiece const& piece, double x, double y) {
+    auto const u = piece.Evaluate(0, x, y), v = piece.Evaluate(1, x, y);
+    double const det = u[1] * v[2] - u[2] * v[1];
+    double const size = u[1] * u[1] + u[2] * u[2] + v[1] * v[1] + v[2] * v[2];
+    double const second = std::hypot(piece.GetStray(0, 1.0), piece.GetStray(1, 1.0)) * 2.0;
+    return det == 0.0 ? 1e300 : second * size / (det * det);  // |inverse|^2 <= size / det^2
+}
+
 }  // namespace
 
 void TexelBand::Reset(int first, int rows, int tileWidth) {
@@ -73,7 +82,10 @@ std::array<double, 4> UVRaster::GetJacobian(int domain, double s, double t) {
     return jacobian;
 }
 
-std::vector<TexelHits> const& UVRaster::Rasterise(Index face, TileGrid const& grid, TexelBand& band) {
+std::vector<TexelHits> const& UVRaster::Rasterise(Index face, TileGrid const& grid, TexelBand& band, int firstColumn,
+                                                  int numColumns) {
+    _firstColumn = firstColumn;
+    _lastColumn = std::min(grid.width, firstColumn + numColumns) - 1;
     _tree.Bind(face);
     _face = face;
     _grid = grid;
@@ -93,8 +105,8 @@ void UVRaster::RasterNode(int node, int depth, TexelHits& hits) {
     auto const u = _tree.GetBounds(node, 0), v = _tree.GetBounds(node, 1);
     double minX = _grid.ToX(u[0]), maxX = _grid.ToX(u[1]), minY = _grid.ToY(v[1]), maxY = _grid.ToY(v[0]);
     double const slack = 2 * kCoveredTexels;
-    minX = std::max(minX - slack, 0.0);
-    maxX = std::min(maxX + slack, _grid.width - 1.0);
+    minX = std::max(minX - slack, static_cast<double>(_firstColumn));
+    maxX = std::min(maxX + slack, static_cast<double>(_lastColumn));
     minY = std::max(minY - slack, static_cast<double>(_band->firstRow));
     maxY = std::min(maxY + slack, _band->firstRow + _band->numRows - 1.0);
     if (std::ceil(minX) > std::floor(maxX) || std::ceil(minY) > std::floor(maxY)) return;
@@ -120,8 +132,8 @@ void UVRaster::RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain cons
     piece.coefficients[1][0] = centreY - piece.originY;
     piece.FindBounds();
     double const top = _band->firstRow - 1.0, bottom = _band->firstRow + _band->numRows + 0.0;
-    if (centreY + piece.reach[1] < top || centreY - piece.reach[1] > bottom || centreX + piece.reach[0] < -1.0 ||
-        centreX - piece.reach[0] > _grid.width || piece.IsCollapsed()) {
+    if (centreY + piece.reach[1] < top || centreY - piece.reach[1] > bottom || centreX + piece.reach[0] < _firstColumn - 1.0 ||
+        centreX - piece.reach[0] > _lastColumn + 1.0 || piece.IsCollapsed()) {
         return;
     }
     double worst = 0.0;
@@ -171,8 +183,8 @@ void UVRaster::RasterCell(TexturePiece const& piece, double x, double y, double 
             narrow(-vs * inverse, us * dy * inverse, limitT);
         }
         if (from > to) continue;
-        int const firstX = std::max(0, static_cast<int>(std::ceil(std::max(from, -1.0))));
-        int const lastX = std::min(_grid.width - 1, static_cast<int>(std::floor(std::min(to, 1e9))));
+        int const firstX = std::max(_firstColumn, static_cast<int>(std::ceil(std::max(from, -1.0))));
+        int const lastX = std::min(_lastColumn, static_cast<int>(std::floor(std::min(to, 1e9))));
         AddRow(piece, row, firstX, lastX);
         if (_texel.size() >= kFlushAt) Flush(piece, x, y, half, hits);
     }
@@ -211,6 +223,7 @@ void UVRaster::Flush(TexturePiece const& piece, double x, double y, double half,
                             .startX = x,
                             .startY = y,
                             .reach = 2.0 * half,
+                            .bend = FindBend(piece, x, y),
                             .low = -_tree.GetCentre() - kMargin,
                             .high = 1.0 - _tree.GetCentre() + kMargin,
                             .x = _x.data(),

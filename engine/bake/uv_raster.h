@@ -63,7 +63,13 @@ public:
 
     /// The texels of the band that `face` covers and no face before it does, one TexelHits per
     /// domain. Faces must come in ascending order.
-    std::vector<TexelHits> const& Rasterise(Index face, TileGrid const& grid, TexelBand& band);
+    ///
+    /// \param firstColumn, numColumns  the part of the band that is looked at
+    std::vector<TexelHits> const& Rasterise(Index face, TileGrid const& grid, TexelBand& band, int firstColumn,
+                                            int numColumns);
+    std::vector<TexelHits> const& Rasterise(Index face, TileGrid const& grid, TexelBand& band) {
+        return Rasterise(face, grid, band, 0, grid.width);
+    }
 
     UVBounds GetBounds(Index face);
 
@@ -90,6 +96,7 @@ private:
     Index _face = -1;
     TileGrid _grid;
     TexelBand* _band = nullptr;
+    int _firstColumn = 0, _lastColumn = 0;
     // candidates of the piece at hand
     std::vector<int> _texel;
     std::vector<double> _targetX, _targetY, _x, _y, _residual;
