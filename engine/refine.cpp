@@ -10,6 +10,7 @@
 #include <opensubdiv/far/primvarRefiner.h>
 
 #include "engine/job.h"
+#include "eval/face_places.h"
 #include "eval/surface_sample.h"
 #include "far_ext/error.h"
 #include "far_ext/refiner.h"
@@ -121,13 +122,10 @@ void MoveToLimit(Scene& fine) {
             if (isDone[vertices[corner]]) continue;
             if (!isBound) tree.Bind(face);
             isBound = true;
-            constexpr double kQuad[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-            constexpr double kTriangle[3][2] = {{0, 0}, {1, 0}, {0, 1}};
-            bool const hasOneDomain = surface.GetNumDomains(face) == 1;
-            double const* const st = !hasOneDomain ? kQuad[0] : surface.IsLoop() ? kTriangle[corner] : kQuad[corner];
+            auto const place = eval::GetCornerPlace(surface, face, corner);
             for (int c = 0; c < 3; ++c) {
                 fine.positions[3 * static_cast<size_t>(vertices[corner]) + static_cast<size_t>(c)] =
-                    eval::EvaluateChannel(tree, hasOneDomain ? 0 : corner, st[0], st[1], c);
+                    eval::EvaluateChannel(tree, place.domain, place.s, place.t, c);
             }
             isDone[vertices[corner]] = 1;
         }

@@ -14,6 +14,7 @@
 #include "engine/bake/exr_lookup.h"
 #include "engine/bake/layout.h"
 #include "engine/bake/uv_raster.h"
+#include "eval/face_places.h"
 #include "eval/surface_sampler.h"
 
 namespace limn::engine {
@@ -43,25 +44,6 @@ std::vector<int> FindComponents(Level const& level, int& count) {
     }
     count = static_cast<int>(numbers.size());
     return component;
-}
-
-/// A place on an edge, as a domain of one of its faces sees it: tau runs from the face's corner i to the
-/// next one.
-struct EdgePlace {
-    int domain = 0;
-    double s = 0.0, t = 0.0;
-};
-
-EdgePlace PlaceOnEdge(eval::LimitSurface const& surface, Index face, int size, int corner, double tau) {
-    if (surface.GetNumDomains(face) > 1) {  // sub-quads: (1, 0) is the middle of the edge
-        if (tau <= 0.5) return {corner, 2.0 * tau, 0.0};
-        return {(corner + 1) % size, 0.0, 2.0 - 2.0 * tau};
-    }
-    constexpr double kQuad[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
-    constexpr double kTriangle[4][2] = {{0, 0}, {1, 0}, {0, 1}, {0, 0}};
-    double const* const a = surface.IsLoop() ? kTriangle[corner] : kQuad[corner];
-    double const* const b = surface.IsLoop() ? kTriangle[corner + 1] : kQuad[corner + 1];
-    return {0, a[0] + tau * (b[0] - a[0]), a[1] + tau * (b[1] - a[1])};
 }
 
 class Auditor {
@@ -150,8 +132,8 @@ void Auditor::AuditSeamsOf(Map const& map, std::vector<std::string> const& chann
         raster.Bind(face);
         for (int k = 0; k < kPlaces; ++k) {
             double const tau = (k + 0.5) / kPlaces;
-            auto const place = PlaceOnEdge(_uvSurface, face, _level.GetFaceVertices(face).size(), corner,
-                                           isReversed ? 1.0 - tau : tau);
+            auto const place = eval::GetEdgePlace(_uvSurface, face, _level.GetFaceVertices(face).size(), corner,
+                                                  isReversed ? 1.0 - tau : tau);
             auto const [u, v] = raster.Evaluate(place.domain, place.s, place.t);
             // A seam on a tile's border belongs to the tile its face lies in: look a hair inside.
             auto const [cu, cv] = raster.Evaluate(place.domain, 0.01 * 0.5 + 0.99 * place.s, 0.01 * 0.5 + 0.99 * place.t);
@@ -265,24 +247,17 @@ std::vector<Auditor::Sums> Auditor::SumTexels(std::vector<int> const& component,
     return total;
 }
 
-/// Surface area per component by the 3 x 3 Gauss rule on every domain, to tell whether texels cover it.
+/// Surface area per component, to tell whether texels cover it.
 std::vector<double> Auditor::FindAreas(std::vector<int> const& component, int numComponents) {
-    constexpr double kNodes[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
-    constexpr double kWeights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
     std::vector<double> areas(static_cast<size_t>(numComponents), 0.0);
     eval::FaceTree tree(_surface, _scene.positions, 3);
     for (Index face = 0; face < _surface.GetNumFaces(); ++face) {
         if (!_surface.HasLimit(face)) continue;
         tree.Bind(face);
-        for (int domain = 0; domain < _surface.GetNumDomains(face); ++domain) {
-            for (int j = 0; j < 3; ++j) {
-                for (int i = 0; i < 3; ++i) {
-                    double const side = _surface.IsLoop() ? 1.0 - kNodes[j] : 1.0;
-                    auto const x = eval::EvaluateSample(tree, domain, kNodes[i] * side, kNodes[j], 1.0);
-                    areas[component[face]] += kWeights[i] * kWeights[j] * side * x.tangentS.cross(x.tangentT).norm();
-                }
-            }
-        }
+        eval::ForEachGaussPoint(_surface, face, [&](eval::FacePlace const& place, double weight) {
+            auto const x = eval::EvaluateSample(tree, place.domain, place.s, place.t, 1.0);
+            areas[component[face]] += weight * x.tangentS.cross(x.tangentT).norm();
+        });
     }
     return areas;
 }

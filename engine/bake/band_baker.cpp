@@ -11,6 +11,7 @@
 #include <tbb/parallel_for.h>
 
 #include "engine/bake/pixel_kernel.h"
+#include "eval/face_places.h"
 #include "far_ext/error.h"
 #include "far_ext/refiner.h"
 
@@ -98,10 +99,8 @@ BandBaker::BandBaker(Scene const& scene, Far::TopologyRefiner const& refiner, Sc
     if (hasStretch) _meanArea = FindMeanArea();
 }
 
-/// Surface area over texture area, both by the 3 x 3 point Gauss rule on every domain.
+/// Surface area over texture area of all that is baked.
 double BandBaker::FindMeanArea() {
-    constexpr double kNodes[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
-    constexpr double kWeights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
     struct Areas {
         double surface = 0.0, texture = 0.0;
     };
@@ -113,21 +112,12 @@ double BandBaker::FindMeanArea() {
             if (!_isBaked[face]) continue;
             worker.tree.Bind(face);
             worker.raster.Bind(face);
-            for (int domain = 0; domain < _surface->GetNumDomains(face); ++domain) {
-                for (int j = 0; j < 3; ++j) {
-                    for (int i = 0; i < 3; ++i) {
-                        // A triangle is the square with one side collapsed.
-                        double const s = _surface->IsLoop() ? kNodes[i] * (1.0 - kNodes[j]) : kNodes[i];
-                        double const t = kNodes[j];
-                        double const weight =
-                            kWeights[i] * kWeights[j] * (_surface->IsLoop() ? 1.0 - kNodes[j] : 1.0);
-                        auto const sample = eval::EvaluateSample(worker.tree, domain, s, t, 1.0);
-                        auto const [us, ut, vs, vt] = worker.raster.GetJacobian(domain, s, t);
-                        areas[face].surface += weight * sample.tangentS.cross(sample.tangentT).norm();
-                        areas[face].texture += weight * std::abs(us * vt - ut * vs);
-                    }
-                }
-            }
+            eval::ForEachGaussPoint(*_surface, face, [&](eval::FacePlace const& place, double weight) {
+                auto const sample = eval::EvaluateSample(worker.tree, place.domain, place.s, place.t, 1.0);
+                auto const [us, ut, vs, vt] = worker.raster.GetJacobian(place.domain, place.s, place.t);
+                areas[face].surface += weight * sample.tangentS.cross(sample.tangentT).norm();
+                areas[face].texture += weight * std::abs(us * vt - ut * vs);
+            });
         }
     });
     Areas total;

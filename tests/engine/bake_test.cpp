@@ -1,8 +1,6 @@
 #include "engine/bake/bake.h"
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
@@ -12,28 +10,14 @@
 #include "eval/surface_sample.h"
 #include "far_ext/error.h"
 #include "far_ext/refiner.h"
+#include "support/files.h"
 #include "support/meshes.h"
 
 namespace limn {
 namespace {
 
-namespace fs = std::filesystem;
 using engine::BakeOptions;
 using engine::BakeReport;
-
-/// A folder that is gone when the test ends.
-class TemporaryFolder {
-public:
-    TemporaryFolder() : _path(fs::temp_directory_path() / ("limn_bake_" + std::to_string(::getpid()) + "_" + std::to_string(counter++))) {
-        fs::create_directory(_path);
-    }
-    ~TemporaryFolder() { fs::remove_all(_path); }
-    std::string operator/(std::string const& name) const { return (_path / name).string(); }
-
-private:
-    static inline int counter = 0;
-    fs::path _path;
-};
 
 BakeOptions MakeOptions(std::string const& pattern, std::vector<std::string> maps, int size) {
     BakeOptions options;
@@ -53,7 +37,7 @@ BakeReport RunBake(engine::Scene const& scene, BakeOptions const& options, engin
 // The torus's UVs are its parameters, so the texel's surface point is known by evaluating face and (s, t)
 // directly: the bake must find the same position, normal and curvature.
 TEST(Bake, TexelsHoldTheLimitSurface) {
-    TemporaryFolder const folder;
+    test::TemporaryFolder const folder;
     engine::Scene const torus = test::MakeTorus(12, 8);
     auto options = MakeOptions(folder / "{map}.exr", {"position", "normal", "curvature"}, 48);
     // Straight texture coordinates, so that u and v are the parameters themselves.
@@ -92,7 +76,7 @@ TEST(Bake, FilesDoNotDependOnThreads) {
     engine::Scene const spot = test::LoadData("../../scenes/spot/spot.obj");
     std::vector<std::string> sums;
     for (int threads : {1, 3}) {
-        TemporaryFolder const folder;
+        test::TemporaryFolder const folder;
         auto options = MakeOptions(folder / "{map}.<UDIM>.exr", {"mean", "normal", "principal-direction", "stretch"}, 200);
         options.isHalf = options.hasMips = options.hasCoverage = true;
         options.samplesPerSide = 2;
@@ -107,7 +91,7 @@ TEST(Bake, FilesDoNotDependOnThreads) {
 
 // Moving the other mesh by d along z makes the displacement d times the normal's z, and the vector d z.
 TEST(Bake, DisplacementIsTheDifferenceToTheOtherLimit) {
-    TemporaryFolder const folder;
+    test::TemporaryFolder const folder;
     engine::Scene const torus = test::MakeTorus(12, 8);
     engine::Scene moved = torus;
     for (size_t i = 2; i < moved.positions.size(); i += 3) moved.positions[i] += 0.25;
@@ -131,7 +115,7 @@ TEST(Bake, DisplacementIsTheDifferenceToTheOtherLimit) {
 
 // A tangent-space vector has the same length, and its last component is the displacement along the normal.
 TEST(Bake, TangentSpaceKeepsLengthAndNormalPart) {
-    TemporaryFolder const folder;
+    test::TemporaryFolder const folder;
     engine::Scene const torus = test::MakeTorus(12, 8);
     engine::Scene moved = torus;
     for (size_t i = 0; i < moved.positions.size(); ++i) moved.positions[i] += i % 3 == 0 ? 0.2 : 0.1;
@@ -151,7 +135,7 @@ TEST(Bake, TangentSpaceKeepsLengthAndNormalPart) {
 }
 
 TEST(Bake, PrimvarsAreSubdividedLikePositions) {
-    TemporaryFolder const folder;
+    test::TemporaryFolder const folder;
     engine::Scene torus = test::MakeTorus(12, 8);
     torus.primvars.push_back({"color", 4, {}});
     torus.primvars.push_back({"height", 1, {}});
@@ -173,7 +157,7 @@ TEST(Bake, PrimvarsAreSubdividedLikePositions) {
 
 // log2 of area ratio over its mean: 0 where the layout is even, and the texture-weighted mean of 2^stretch is 1.
 TEST(Bake, StretchAveragesToOne) {
-    TemporaryFolder const folder;
+    test::TemporaryFolder const folder;
     engine::Scene const torus = test::MakeTorus(12, 8);
     RunBake(torus, MakeOptions(folder / "s.exr", {"stretch"}, 64));
     engine::ExrLookup lookup;
@@ -185,7 +169,7 @@ TEST(Bake, StretchAveragesToOne) {
 }
 
 TEST(Bake, EncodingScalesAndOffsets) {
-    TemporaryFolder const folder;
+    test::TemporaryFolder const folder;
     engine::Scene const torus = test::MakeTorus(12, 8);
     RunBake(torus, MakeOptions(folder / "plain.exr", {"normal"}, 16));
     auto options = MakeOptions(folder / "encoded.exr", {"normal"}, 16);
@@ -199,7 +183,7 @@ TEST(Bake, EncodingScalesAndOffsets) {
 
 // Supersampled maps agree with a finer bake averaged by hand.
 TEST(Bake, SupersamplingIsTheMeanOfAFinerBake) {
-    TemporaryFolder const folder;
+    test::TemporaryFolder const folder;
     engine::Scene const torus = test::MakeTorus(12, 8);
     RunBake(torus, MakeOptions(folder / "fine.exr", {"mean"}, 64));
     auto options = MakeOptions(folder / "coarse.exr", {"mean"}, 32);
@@ -215,18 +199,16 @@ TEST(Bake, SupersamplingIsTheMeanOfAFinerBake) {
 
 TEST(Bake, TilesAreThoseWithTexels) {
     if (!test::HasAsset("udim/grid_with_udims.obj")) GTEST_SKIP() << "the larger assets are not here";
-    TemporaryFolder const folder;
+    test::TemporaryFolder const folder;
     auto const report = RunBake(test::LoadAsset("udim/grid_with_udims.obj"), MakeOptions(folder / "n.<UDIM>.exr", {"normal"}, 32));
     EXPECT_EQ(report.tiles.size(), 9u);
     EXPECT_EQ(report.tiles.front(), 1001);
     EXPECT_EQ(report.tiles.back(), 1056);
-    size_t files = 0;
-    for (auto const& entry : fs::directory_iterator(fs::path(folder / "x").parent_path())) files += entry.is_regular_file();
-    EXPECT_EQ(files, 9u);
+    EXPECT_EQ(folder.List().size(), 9u);
 }
 
 TEST(Bake, AMeshWithoutUVsIsRefused) {
-    TemporaryFolder const folder;
+    test::TemporaryFolder const folder;
     try {
         RunBake(test::MakeCube(), MakeOptions(folder / "n.exr", {"normal"}, 16));
         FAIL() << "no error";
@@ -237,7 +219,7 @@ TEST(Bake, AMeshWithoutUVsIsRefused) {
 
 // Sum of K dA over the texels of a closed torus is 0, of spot (a sphere) 4 pi.
 TEST(Bake, GaussBonnetHoldsOnClosedMeshes) {
-    TemporaryFolder const folder;
+    test::TemporaryFolder const folder;
     for (auto const& [scene, expected] : {std::pair{test::MakeTorus(24, 16), 0.0},
                                           std::pair{test::LoadData("../../scenes/spot/spot.obj"), 4 * std::acos(-1.0)}}) {
         auto options = MakeOptions(folder / "{mesh}.{map}.<UDIM>.exr", {"position"}, 512);
@@ -254,7 +236,7 @@ TEST(Bake, GaussBonnetHoldsOnClosedMeshes) {
 
 // Positions agree across seams to within what one texel spans: the padding continues the chart.
 TEST(Bake, SeamsOfPositionsCloseWithinATexel) {
-    TemporaryFolder const folder;
+    test::TemporaryFolder const folder;
     engine::Scene const torus = test::MakeTorus(24, 16);
     auto const options = MakeOptions(folder / "{map}.exr", {"position"}, 256);
     auto const report = RunBake(torus, options);

@@ -9,6 +9,7 @@
 #include <opensubdiv/bfr/surface.h>
 #include <opensubdiv/far/primvarRefiner.h>
 
+#include "eval/face_places.h"
 #include "eval/surface_sample.h"
 #include "far_ext/refiner.h"
 #include "support/meshes.h"
@@ -176,7 +177,6 @@ TEST_P(LimitSurfaceOnCage, CornersAreWhereRefinementLeads) {
     }
     LimitSurface const surface(*refiner);
     FaceTree tree(surface, scene.positions, 3);
-    bool const isLoop = surface.IsLoop();
     double const size = Diagonal(scene.positions);
     auto const base = deep->GetLevel(0);
     for (Index face = 0; face < surface.GetNumFaces(); ++face) {
@@ -186,11 +186,8 @@ TEST_P(LimitSurfaceOnCage, CornersAreWhereRefinementLeads) {
         for (int corner = 0; corner < vertices.size(); ++corner) {
             Index vertex = vertices[corner];
             for (int level = 0; level < kLevels; ++level) vertex = deep->GetLevel(level).GetVertexChildVertex(vertex);
-            constexpr double kQuad[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-            constexpr double kTriangle[3][2] = {{0, 0}, {1, 0}, {0, 1}};
-            bool const isWhole = surface.GetNumDomains(face) == 1;
-            double const* const st = !isWhole ? kQuad[0] : isLoop ? kTriangle[corner] : kQuad[corner];
-            auto const sample = eval::EvaluateSample(tree, isWhole ? 0 : corner, st[0], st[1], 1.0);
+            auto const place = eval::GetCornerPlace(surface, face, corner);
+            auto const sample = eval::EvaluateSample(tree, place.domain, place.s, place.t, 1.0);
             EXPECT_LT((sample.position - points[vertex].p).norm(), 2e-3 * size) << "face " << face << " corner " << corner;
             EXPECT_TRUE(sample.normal.allFinite());
         }
