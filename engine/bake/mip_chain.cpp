@@ -53,6 +53,8 @@ Box FindBox(int fine, int coarse, int at) {
 MipChain::MipChain(int width, int height, int numLevels, int numChannels, std::vector<ChannelGroup> groups,
                    Emit emit)
     : _numChannels(numChannels), _groups(std::move(groups)), _emit(std::move(emit)) {
+    _hasLines = std::any_of(_groups.begin(), _groups.end(),
+                            [](ChannelGroup const& group) { return group.averaging == Averaging::Line; });
     for (int level = 0; level < numLevels; ++level) {
         Level l;
         l.width = std::max(1, width >> level);
@@ -116,6 +118,35 @@ void MipChain::AverageTexel(std::span<float const> weights, std::span<float cons
     }
 }
 
+/// The two common cases of a 2 x 2 box: fully covered (no lines among the channels), and empty.
+bool MipChain::ReduceQuarter(Level const& from, int row, int x, TexelRow& result) const {
+    TexelRow const &top = from.window[row % 3], &bottom = from.window[(row + 1) % 3];
+    size_t const at = 2 * static_cast<size_t>(x), fineWidth = static_cast<size_t>(from.width);
+    if (!(top.isFilled[at] | top.isFilled[at + 1] | bottom.isFilled[at] | bottom.isFilled[at + 1])) return true;
+    bool const isCovered = top.coverage[at] == 1.0f && top.coverage[at + 1] == 1.0f && bottom.coverage[at] == 1.0f &&
+                           bottom.coverage[at + 1] == 1.0f;
+    if (!isCovered || _hasLines) return false;
+    size_t const width = result.coverage.size(), to = static_cast<size_t>(x);
+    for (ChannelGroup const& group : _groups) {
+        float lengthSquared = 0.0f;
+        for (int c = group.first; c < group.first + group.count; ++c) {
+            size_t const plane = static_cast<size_t>(c) * fineWidth + at;
+            float const mean = 0.25f * ((top.values[plane] + top.values[plane + 1]) +
+                                        (bottom.values[plane] + bottom.values[plane + 1]));
+            result.values[static_cast<size_t>(c) * width + to] = mean;
+            lengthSquared += mean * mean;
+        }
+        if (group.averaging != Averaging::UnitVector || !(lengthSquared > 0.0f)) continue;
+        float const toUnit = 1.0f / std::sqrt(lengthSquared);
+        for (int c = group.first; c < group.first + group.count; ++c) {
+            result.values[static_cast<size_t>(c) * width + to] *= toUnit;
+        }
+    }
+    result.coverage[to] = 1.0f;
+    result.isFilled[to] = 1;
+    return true;
+}
+
 TexelRow MipChain::Reduce(Level const& from, int width, int height, int row) const {
     TexelRow result;
     size_t const w = static_cast<size_t>(width), fineWidth = static_cast<size_t>(from.width);
@@ -123,10 +154,12 @@ TexelRow MipChain::Reduce(Level const& from, int width, int height, int row) con
     result.coverage.assign(w, 0.0f);
     result.isFilled.assign(w, 0);
     Box const rows = FindBox(from.height, height, row);
+    bool const isQuarter = rows.count == 2 && from.width == 2 * width;  // boxes of 2 x 2
     float weights[9];
     float const* values[9];
     size_t at[9];
     for (int x = 0; x < width; ++x) {
+        if (isQuarter && ReduceQuarter(from, rows.first, x, result)) continue;
         Box const columns = FindBox(from.width, width, x);
         // First what is covered; where nothing is, the padding.
         float covered = 0.0f;

@@ -46,11 +46,13 @@ private:
 
     void AddRow(int level, TexelRow const& row);
     TexelRow Reduce(Level const& from, int width, int height, int row) const;
+    bool ReduceQuarter(Level const& from, int row, int x, TexelRow& result) const;
     void AverageTexel(std::span<float const> weights, std::span<float const* const> values,
                       std::span<size_t const> at, size_t stride, float* out, size_t outStride) const;
 
     int _numChannels;
     std::vector<ChannelGroup> _groups;
+    bool _hasLines = false;
     Emit _emit;
     std::vector<Level> _levels;
 };

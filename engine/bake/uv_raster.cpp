@@ -18,12 +18,11 @@ constexpr int kMaxNewtonSteps = 12;
 constexpr int kMaxDepth = 30;       // pieces below 2^-30 of a face are linear to any precision
 constexpr size_t kFlushAt = 1024;   // candidates per Newton batch
 
-/// Bound of how fast the map's Jacobian changes from texel to texel, about (x, y).
-double FindBend(TexturePiece const& piece, double x, double y) {
-    auto const u = piece.Evaluate(0, x, y), v = piece.Evaluate(1, x, y);
+/// Bound of how fast the map's Jacobian changes from texel to texel, where it is u[1..2], v[1..2].
+double FindBend(TexturePiece const& piece, std::array<double, 3> const& u, std::array<double, 3> const& v) {
     double const det = u[1] * v[2] - u[2] * v[1];
     double const size = u[1] * u[1] + u[2] * u[2] + v[1] * v[1] + v[2] * v[2];
-    double const second = std::hypot(piece.GetStray(0, 1.0), piece.GetStray(1, 1.0)) * 2.0;
+    double const second = 2.0 * std::hypot(piece.GetStray(0, 1.0), piece.GetStray(1, 1.0));
     return det == 0.0 ? 1e300 : second * size / (det * det);  // |inverse|^2 <= size / det^2
 }
 
@@ -153,6 +152,7 @@ void UVRaster::RasterCell(TexturePiece const& piece, double x, double y, double 
     auto const u = piece.Evaluate(0, x, y), v = piece.Evaluate(1, x, y);
     // How far the map strays from its linear part within the cell, plus what counts as covered.
     double const stray[2] = {piece.GetStray(0, half) + 10 * kCoveredTexels, piece.GetStray(1, half) + 10 * kCoveredTexels};
+    double const bend = FindBend(piece, u, v);
     double const cx = piece.originX + u[0], cy = piece.originY + v[0];
     double const us = u[1], ut = u[2], vs = v[1], vt = v[2];
     double const reachX = (std::abs(us) + std::abs(ut)) * half + stray[0];
@@ -186,9 +186,9 @@ void UVRaster::RasterCell(TexturePiece const& piece, double x, double y, double 
         int const firstX = std::max(_firstColumn, static_cast<int>(std::ceil(std::max(from, -1.0))));
         int const lastX = std::min(_lastColumn, static_cast<int>(std::floor(std::min(to, 1e9))));
         AddRow(piece, row, firstX, lastX);
-        if (_texel.size() >= kFlushAt) Flush(piece, x, y, half, hits);
+        if (_texel.size() >= kFlushAt) Flush(piece, x, y, half, bend, hits);
     }
-    Flush(piece, x, y, half, hits);
+    Flush(piece, x, y, half, bend, hits);
 }
 
 void UVRaster::AddRow(TexturePiece const& piece, int row, int firstX, int lastX) {
@@ -199,6 +199,8 @@ void UVRaster::AddRow(TexturePiece const& piece, int row, int firstX, int lastX)
     _targetY.resize(start + count);
     int const texel = (row - _band->firstRow) * _band->width + firstX;
     double const x = firstX - piece.originX, y = row - piece.originY;
+    // Accept will ask who owns these texels.
+    for (size_t i = 0; i < count; i += 16) __builtin_prefetch(&_band->owner[static_cast<size_t>(texel) + i], 1);
     for (size_t i = 0; i < count; ++i) {
         _texel[start + i] = texel + static_cast<int>(i);
         _targetX[start + i] = x + static_cast<double>(static_cast<int>(i));
@@ -207,7 +209,7 @@ void UVRaster::AddRow(TexturePiece const& piece, int row, int firstX, int lastX)
 }
 
 /// Solves for the candidates gathered in the cell about (x, y).
-void UVRaster::Flush(TexturePiece const& piece, double x, double y, double half, TexelHits& hits) {
+void UVRaster::Flush(TexturePiece const& piece, double x, double y, double half, double bend, TexelHits& hits) {
     size_t const count = _texel.size();
     if (count == 0) return;
     size_t const padded = (count + eval::kInversionLanes - 1) / eval::kInversionLanes * eval::kInversionLanes;
@@ -223,7 +225,7 @@ void UVRaster::Flush(TexturePiece const& piece, double x, double y, double half,
                             .startX = x,
                             .startY = y,
                             .reach = 2.0 * half,
-                            .bend = FindBend(piece, x, y),
+                            .bend = bend,
                             .low = -_tree.GetCentre() - kMargin,
                             .high = 1.0 - _tree.GetCentre() + kMargin,
                             .x = _x.data(),

@@ -85,7 +85,7 @@ private:
     void RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain const& domain, TexelHits& hits);
     void RasterCell(TexturePiece const& piece, double x, double y, double half, TexelHits& hits);
     void AddRow(TexturePiece const& piece, int row, int firstX, int lastX);
-    void Flush(TexturePiece const& piece, double x, double y, double half, TexelHits& hits);
+    void Flush(TexturePiece const& piece, double x, double y, double half, double bend, TexelHits& hits);
     void Accept(TexturePiece const& piece, TexelHits& hits);
     bool IsCovered(TexturePiece const& piece, size_t candidate, double& s, double& t);
 
