@@ -4,8 +4,7 @@
 #include <limn/eval/surface_sample.h>
 #include <limn/far_ext/refiner.h>
 
-// The limit of a cube's corner is 5/9 of the corner: (9 v + 4 * 3 edge ends + 3 face opposites + ...) as
-// surface.md 1.1 has it: 9/24 - 3 * 4/24 * ... evaluates to (1 - 2 * (4 * 3 / 24 * 1/3 + 3 / 24 * 2/3)).
+// The limit of a cube's corner: own weight 9/24, three edge ends 4/24 each, three face opposites 1/24 each.
 int main() {
     limn::far_ext::ControlMesh cube;
     cube.numVertices = 8;
@@ -17,7 +16,7 @@ int main() {
     limn::eval::FaceTree tree(surface, points, 3);
     tree.Bind(0);
     auto const corner = limn::eval::EvaluateSample(tree, 0, 0.0, 0.0, 1.0);
-    // Corner (-1,-1,-1): own weight 9/24, three edge ends 4/24 each, three face opposites 1/24 each.
+    // x of corner (-1,-1,-1), of its edge ends (1, -1, -1) and of its face opposites (1, 1, -1).
     double const expected = -(9.0 + 4.0 * (1 + 1 - 1) + (1 - 1 - 1) * 1.0) / 24.0;
     std::printf("%.12f %.12f\n", corner.position[0], expected);
     return std::abs(corner.position[0] - expected) < 1e-9 ? 0 : 1;
