@@ -34,7 +34,6 @@ public:
     /// True if the face is a plain patch of the face's own surroundings: no ring needed.
     bool IsPlainPatch(Index face) const { return _kinds[face] == FaceKind::Plain; }
 
-    size_t GetNumRings() const { return _cache->GetNumRings(); }
     Far::TopologyRefiner const& GetRefiner() const { return _refiner; }
     int GetFVarChannel() const { return _channel; }
 

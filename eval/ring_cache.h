@@ -32,8 +32,6 @@ public:
     RingNode const* Find(far_ext::FaceRing const& ring);
     RingNode const* FindChild(RingNode const& node, int child);
 
-    size_t GetNumRings() const { return _nodes.size(); }
-
 private:
     struct Hash {
         size_t operator()(far_ext::FaceRing const& ring) const { return ring.Hash(); }

@@ -30,7 +30,7 @@ public:
         size_t moved = 0, degenerate = 0;
         std::vector<Place> movedPlaces;  ///< the first kMaxPlaces of them
     };
-    static constexpr size_t kMaxPlaces = 256;
+    static constexpr size_t kMaxPlaces = 1 << 16;  // so many that which are kept does not depend on threads
 
     void Bind(Index face);
 
