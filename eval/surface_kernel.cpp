@@ -10,7 +10,6 @@ namespace limn::eval {
     namespace name {                                                           \
     void EvaluateSurfaceInFloat(SurfaceBatch<float> const&, Quantity, bool);   \
     void EvaluateSurfaceInDouble(SurfaceBatch<double> const&, Quantity, bool); \
-    void InvertTextureMap(InversionBatch const&, bool);                        \
     }
 LIMN_DECLARE_KERNEL(sse2)
 LIMN_DECLARE_KERNEL(avx2)
@@ -27,11 +26,6 @@ void EvaluateSurface(SurfaceBatch<double> const& batch, Quantity quantity, bool 
     constexpr std::array kKernels{sse2::EvaluateSurfaceInDouble, avx2::EvaluateSurfaceInDouble,
                                   avx512::EvaluateSurfaceInDouble};
     kKernels[static_cast<size_t>(GetInstructionSet())](batch, quantity, isTriangle);
-}
-
-void InvertTextureMap(InversionBatch const& batch, bool isTriangle) {
-    constexpr std::array kKernels{sse2::InvertTextureMap, avx2::InvertTextureMap, avx512::InvertTextureMap};
-    kKernels[static_cast<size_t>(GetInstructionSet())](batch, isTriangle);
 }
 
 }  // namespace limn::eval

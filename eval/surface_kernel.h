@@ -50,26 +50,4 @@ struct SurfaceBatch {
 void EvaluateSurface(SurfaceBatch<float> const& batch, Quantity quantity, bool isTriangle);
 void EvaluateSurface(SurfaceBatch<double> const& batch, Quantity quantity, bool isTriangle);
 
-/// One texture-space Newton problem per lane: find (x, y) with map(x, y) = target.
-struct InversionBatch {
-    double const* coefficients;  ///< [2][16] (Loop: 15 used) in texels about a local origin
-    double const* targetX;       ///< texels about the same origin
-    double const* targetY;
-    double startX, startY;       ///< where the first guess expands the map to second order
-    double reach;                ///< guesses are kept this near to the start
-    double bend;                 ///< bound of the map's second derivatives per texel, squared inverse Jacobian
-    double low, high;            ///< iterates are kept in this range
-    double* x;                   ///< out: about the piece's centre
-    double* y;
-    double* residual;            ///< out: distance in texels, or a bound of it below 1e-5
-    int count;                   ///< arrays are padded to the next multiple of kInversionLanes
-    int maxSteps;
-};
-
-inline constexpr int kInversionLanes = 8;
-
-/// Newton's method in double on all lanes, from a guess by the map's second-order expansion. A step from r
-/// texels off ends within bend / 2 * r^2; a lane is done with the step that is sure to end below 1e-5 texel.
-void InvertTextureMap(InversionBatch const& batch, bool isTriangle);
-
 }  // namespace limn::eval

@@ -59,6 +59,17 @@ struct SparseRows {
 
     /// dst[i] = row i applied to src, for rows of `length` doubles that lie one after another.
     void Apply(double const* src, double* dst, int length) const {
+        switch (length) {  // what most callers ask for, without inner loops
+            case 2: return ApplyTo<2>(src, dst, 2);
+            case 3: return ApplyTo<3>(src, dst, 3);
+            default: return ApplyTo<0>(src, dst, length);
+        }
+    }
+
+private:
+    template <int FixedLength>
+    void ApplyTo(double const* src, double* dst, int anyLength) const {
+        int const length = FixedLength ? FixedLength : anyLength;
         for (int row = 0; row < GetNumRows(); ++row, dst += length) {
             for (int c = 0; c < length; ++c) dst[c] = 0.0;
             for (int k = offsets[row]; k < offsets[row + 1]; ++k) {

@@ -23,6 +23,7 @@ struct BandBaker::Worker {
     eval::SurfaceSampler sampler;
     UVRaster raster;
     std::vector<float> block;  // map values of a block of samples
+    UninitializedVector<int> places;  // the texels they belong to
     std::vector<std::array<double, 4>> jacobians;
     std::vector<float> samplePlanes, lineSums;
     TexelBand sampleTexels;
@@ -32,6 +33,23 @@ struct BandBaker::Worker {
           sampler(tree, baker._quantity, baker._options.isLeftHanded ? -1.0f : 1.0f),
           raster(*baker._uvSurface, baker._scene.uvs) {}
 };
+
+namespace {
+
+/// to[places[i]] = from[i], eight at a time where the places lie side by side.
+void Scatter(std::span<int const> places, float const* from, float* to) {
+    constexpr size_t kGroup = 8;
+    size_t i = 0;
+    for (; i + kGroup <= places.size(); i += kGroup) {
+        int apart = 0;
+        for (size_t k = 0; k < kGroup; ++k) apart |= places[i + k] - static_cast<int>(k) - places[i];
+        if (apart == 0) std::memcpy(to + places[i], from + i, sizeof(float) * kGroup);
+        else for (size_t k = 0; k < kGroup; ++k) to[places[i + k]] = from[i + k];
+    }
+    for (; i < places.size(); ++i) to[places[i]] = from[i];
+}
+
+}  // namespace
 
 BandBaker::~BandBaker() = default;
 
@@ -147,56 +165,105 @@ bool BandBaker::LeavesUdimRange(Index face) {
     return false;
 }
 
-std::unique_ptr<Band> BandBaker::MakeBand(int index, TileGrid grid, std::vector<std::vector<Index>> const& blocks) {
+/// A band of the pool, or a new one; it goes back when the last holder lets go of it.
+std::shared_ptr<Band> BandBaker::AcquireBand(int index, TileGrid const& grid) {
+    std::unique_ptr<Band> band;
+    {
+        std::lock_guard const lock(_poolMutex);
+        if (!_pool.empty()) {
+            band = std::move(_pool.back());
+            _pool.pop_back();
+        }
+    }
+    if (!band) band = std::make_unique<Band>();
+    band->index = index;
+    int const firstRow = index * Band::kRows;
+    band->texels.Resize(firstRow, std::min(Band::kRows, grid.height - firstRow), grid.width);
+    size_t const numTexels = band->texels.owner.size();
+    band->planes.resize(numTexels * _numPlanes);
+    band->isCovered.resize(numTexels);
+    band->coverage.clear();
+    band->low.assign(static_cast<size_t>(_numPlanes), std::numeric_limits<float>::infinity());
+    band->high.assign(static_cast<size_t>(_numPlanes), -std::numeric_limits<float>::infinity());
+    band->numCovered = 0;
+    return {band.release(), [this](Band* done) {
+                std::unique_ptr<Band> owned(done);
+                std::lock_guard const lock(_poolMutex);
+                _pool.push_back(std::move(owned));
+            }};
+}
+
+std::shared_ptr<Band> BandBaker::MakeBand(int index, TileGrid grid, std::vector<std::vector<Index>> const& blocks) {
     CheckInterrupted();
     Worker& worker = LocalWorker();
-    auto band = std::make_unique<Band>();
-    band->index = index;
-    int const firstRow = index * Band::kRows, numRows = std::min(Band::kRows, grid.height - firstRow);
-    size_t const numTexels = static_cast<size_t>(numRows) * grid.width;
-    band->planes.assign(numTexels * _numPlanes, 0.0f);
-    band->texels.Reset(firstRow, numRows, grid.width);
-    band->isCovered.resize(numTexels);
+    std::shared_ptr<Band> band = AcquireBand(index, grid);
+    auto const finish = [&](int firstColumn, int numColumns) { FinishBlock(*band, firstColumn, numColumns); };
     if (_options.samplesPerSide == 1) {
-        RasterSamples(worker, grid, blocks, band->texels, band->planes.data());
-        for (size_t i = 0; i < numTexels; ++i) band->isCovered[i] = band->texels.owner[i] >= 0;
+        RasterSamples(worker, grid, blocks, band->texels, band->planes.data(), [&](int firstColumn, int numColumns) {
+            for (int row = 0; row < band->texels.numRows; ++row) {
+                size_t const at = static_cast<size_t>(row) * grid.width + firstColumn;
+                for (size_t i = at; i < at + numColumns; ++i) band->isCovered[i] = band->texels.owner[i] >= 0;
+            }
+            finish(firstColumn, numColumns);
+        });
     } else {
         Supersample(worker, grid, blocks, *band);
+        finish(0, grid.width);
     }
-    FindRange(*band);
-    auto const count = [](std::vector<uint8_t> const& flags) {
-        return static_cast<size_t>(std::count(flags.begin(), flags.end(), 1));
-    };
-    _texelsCovered += count(band->isCovered);
-    _overlaps += count(band->texels.overlap);
-    if (std::memchr(band->texels.failed.data(), 1, numTexels)) {
-        for (size_t i = 0; i < numTexels; ++i) _newtonFailures += band->texels.failed[i] && !band->isCovered[i];
-    }
+    _texelsCovered += band->numCovered;
     return band;
 }
 
-void BandBaker::FindRange(Band& band) {
-    size_t const numTexels = band.GetNumTexels(), numPlanes = band.planes.size() / numTexels;
-    band.low.assign(numPlanes, std::numeric_limits<float>::infinity());
-    band.high.assign(numPlanes, -std::numeric_limits<float>::infinity());
-    for (size_t plane = 0; plane < numPlanes; ++plane) {
-        engine::FindRange(&band.planes[plane * numTexels], band.isCovered.data(), numTexels, &band.low[plane],
-                          &band.high[plane]);
+/// Counts and ranges of a block whose texels are all known.
+void BandBaker::FinishBlock(Band& band, int firstColumn, int numColumns) {
+    size_t const count = static_cast<size_t>(numColumns), numTexels = band.GetNumTexels();
+    for (int row = 0; row < band.texels.numRows; ++row) {
+        size_t const at = static_cast<size_t>(row) * band.texels.width + firstColumn;
+        uint8_t const* const covered = &band.isCovered[at];
+        size_t numCovered = 0;
+        for (size_t i = 0; i < count; ++i) numCovered += covered[i];
+        band.numCovered += numCovered;
+        if (uint8_t const* const overlap = &band.texels.overlap[at]; std::memchr(overlap, 1, count)) {
+            _overlaps += static_cast<size_t>(std::count(overlap, overlap + count, 1));
+        }
+        if (uint8_t const* const failed = &band.texels.failed[at]; std::memchr(failed, 1, count)) {
+            for (size_t i = 0; i < count; ++i) _newtonFailures += failed[i] && !covered[i];
+        }
+        for (size_t plane = 0; numCovered > 0 && plane < band.low.size(); ++plane) {
+            FindRange(&band.planes[plane * numTexels + at], covered, count, &band.low[plane], &band.high[plane]);
+        }
     }
 }
 
+/// Texels that no face has been asked about yet: no owner, zeros.
+void BandBaker::ClearBlock(TexelBand& texels, float* planes, int firstColumn, int numColumns) const {
+    size_t const count = static_cast<size_t>(numColumns), numTexels = texels.owner.size();
+    for (int row = 0; row < texels.numRows; ++row) {
+        size_t const at = static_cast<size_t>(row) * texels.width + firstColumn;
+        std::fill_n(&texels.owner[at], count, -1);
+        std::fill_n(&texels.overlap[at], count, uint8_t{0});
+        std::fill_n(&texels.failed[at], count, uint8_t{0});
+        for (int plane = 0; plane < _numPlanes; ++plane) std::fill_n(planes + plane * numTexels + at, count, 0.0f);
+    }
+}
+
+/// Fills `texels` and `planes` block by block, while the block is in the cache; finish(first column, number
+/// of columns) is called after each.
+template <class Finish>
 void BandBaker::RasterSamples(Worker& worker, TileGrid const& grid, std::vector<std::vector<Index>> const& blocks,
-                              TexelBand& texels, float* planes) {
+                              TexelBand& texels, float* planes, Finish finish) {
     size_t const planeSize = texels.owner.size();
     size_t untilCheck = 0;
     for (size_t block = 0; block < blocks.size(); ++block) {
         int const firstColumn = static_cast<int>(block) * Band::kBlockColumns;
+        int const numColumns = std::min(Band::kBlockColumns, texels.width - firstColumn);
+        ClearBlock(texels, planes, firstColumn, numColumns);
         for (Index face : blocks[block]) {
             if (untilCheck-- == 0) {
                 CheckInterrupted();
                 untilCheck = 256;
             }
-            auto const& hits = worker.raster.Rasterise(face, grid, texels, firstColumn, Band::kBlockColumns);
+            auto const& hits = worker.raster.Rasterise(face, grid, texels, firstColumn, numColumns);
             bool isBound = false;
             for (int domain = 0; domain < _surface->GetNumDomains(face); ++domain) {
                 if (hits[domain].texel.empty()) continue;
@@ -205,6 +272,7 @@ void BandBaker::RasterSamples(Worker& worker, TileGrid const& grid, std::vector<
                 EvaluateHits(worker, face, domain, hits[domain], planes, planeSize);
             }
         }
+        finish(firstColumn, numColumns);
     }
 }
 
@@ -212,6 +280,8 @@ void BandBaker::EvaluateHits(Worker& worker, Index face, int domain, TexelHits c
                              size_t planeSize) {
     _hasTexels[face].store(true, std::memory_order_relaxed);
     worker.sampler.Evaluate(domain, hits.s, hits.t, [&](std::span<int const> samples, float const* values, size_t stride) {
+        worker.places.resize(samples.size());
+        for (size_t i = 0; i < samples.size(); ++i) worker.places[i] = hits.texel[samples[i]];
         worker.jacobians.clear();
         if (_needsJacobian) {
             for (int sample : samples) {
@@ -225,8 +295,7 @@ void BandBaker::EvaluateHits(Worker& worker, Index face, int domain, TexelHits c
             EvaluateMap(map, _options.maps, _quantity, values, stride, samples.size(), worker.jacobians, _meanArea,
                         worker.block.data(), stride);
             for (size_t c = 0; c < numChannels; ++c, plane += planeSize) {
-                float const* const from = &worker.block[c * stride];
-                for (size_t i = 0; i < samples.size(); ++i) plane[hits.texel[samples[i]]] = from[i];
+                Scatter(worker.places, &worker.block[c * stride], plane);
             }
         }
     });
@@ -238,6 +307,7 @@ void BandBaker::Supersample(Worker& worker, TileGrid const& grid, std::vector<st
     int const n = _options.samplesPerSide;
     size_t const numTexels = band.GetNumTexels();
     std::vector<int> numHits(numTexels, 0);
+    ClearBlock(band.texels, band.planes.data(), 0, grid.width);
     size_t numLines = 0;
     for (Map const& map : _maps) numLines += map.averaging == Averaging::Line;
     worker.lineSums.assign(numLines * 6 * numTexels, 0.0f);
@@ -247,9 +317,9 @@ void BandBaker::Supersample(Worker& worker, TileGrid const& grid, std::vector<st
             TileGrid offset = grid;
             offset.offsetX = (i + 0.5) / n;
             offset.offsetY = (j + 0.5) / n;
-            worker.sampleTexels.Reset(band.texels.firstRow, band.texels.numRows, band.texels.width);
-            sample.assign(band.planes.size(), 0.0f);
-            RasterSamples(worker, offset, blocks, worker.sampleTexels, sample.data());
+            worker.sampleTexels.Resize(band.texels.firstRow, band.texels.numRows, band.texels.width);
+            sample.resize(band.planes.size());
+            RasterSamples(worker, offset, blocks, worker.sampleTexels, sample.data(), [](int, int) {});
             size_t plane = 0, line = 0;
             for (Map const& map : _maps) {
                 size_t const numChannels = static_cast<size_t>(map.GetNumChannels());

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include <tbb/enumerable_thread_specific.h>
@@ -20,10 +21,12 @@ struct Band {
 
     int index = 0;                   ///< rows [kRows * index, ...)
     TexelBand texels;
-    std::vector<float> planes;       ///< [plane][row][column]; 0 where nothing is covered
+    UninitializedVector<float> planes;  ///< [plane][row][column]; 0 where nothing is covered
     std::vector<uint8_t> isCovered;  ///< [row][column]
+    std::vector<uint8_t> isFilled;   ///< [row][column]: covered, or padded by PackBand
     std::vector<float> coverage;     ///< [row][column], 0 to 1; empty without supersampling
     std::vector<float> low, high;    ///< per plane, over covered texels; low > high if there are none
+    size_t numCovered = 0;
 
     size_t GetNumTexels() const { return isCovered.size(); }
     float GetCoverage(size_t texel) const {
@@ -53,7 +56,8 @@ public:
 
     /// \param grid   of the tile, without sample offsets
     /// \param blocks  per Band::kBlockColumns columns all faces that may cover a texel there, ascending
-    std::unique_ptr<Band> MakeBand(int index, TileGrid grid, std::vector<std::vector<Index>> const& blocks);
+    /// \return a band whose memory comes from, and goes back to, one that is done with
+    std::shared_ptr<Band> MakeBand(int index, TileGrid grid, std::vector<std::vector<Index>> const& blocks);
 
     /// Adds what was counted so far, and names the vertices samples were moved away from.
     void AddCounts(BakeReport& report, std::vector<std::string>& movedPlaces) const;
@@ -62,10 +66,13 @@ private:
     struct Worker;
 
     Worker& LocalWorker();
+    template <class Finish>
     void RasterSamples(Worker& worker, TileGrid const& grid, std::vector<std::vector<Index>> const& blocks,
-                       TexelBand& texels, float* planes);
+                       TexelBand& texels, float* planes, Finish finish);
     void EvaluateHits(Worker& worker, Index face, int domain, TexelHits const& hits, float* planes, size_t planeSize);
-    static void FindRange(Band& band);
+    std::shared_ptr<Band> AcquireBand(int index, TileGrid const& grid);
+    void ClearBlock(TexelBand& texels, float* planes, int firstColumn, int numColumns) const;
+    void FinishBlock(Band& band, int firstColumn, int numColumns);
     void Supersample(Worker& worker, TileGrid const& grid, std::vector<std::vector<Index>> const& blocks, Band& band);
     double FindMeanArea();
     std::string NamePlace(eval::SurfaceSampler::Place const& place) const;
@@ -86,6 +93,8 @@ private:
     std::vector<std::atomic<bool>> _hasTexels;
     std::atomic<size_t> _texelsCovered{0}, _overlaps{0}, _newtonFailures{0};
     tbb::enumerable_thread_specific<std::unique_ptr<Worker>> _workers;
+    std::mutex _poolMutex;
+    std::vector<std::unique_ptr<Band>> _pool;
 };
 
 }  // namespace limn::engine

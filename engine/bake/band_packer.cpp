@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include "engine/bake/dilate.h"
@@ -11,40 +12,54 @@ namespace limn::engine {
 
 namespace {
 
-/// Fills the band's uncovered texels from the covered ones round them; returns what is filled.
-std::vector<uint8_t> Pad(std::span<std::shared_ptr<Band> const> window, Band& band, int padding) {
-    std::vector<uint8_t> isFilled = band.isCovered;
-    bool const isAnyCovered =
-        std::any_of(window.begin(), window.end(), [](auto const& b) { return !b->low.empty() && b->low[0] <= b->high[0]; });
-    bool const isAllCovered = std::memchr(band.isCovered.data(), 0, band.isCovered.size()) == nullptr;
-    if (padding == 0 || !isAnyCovered || isAllCovered) return isFilled;
-    int const width = band.texels.width;
-    CoverageRows coverage{window.front()->texels.firstRow, width, {}};
-    std::vector<Band const*> bandOfRow;
-    for (auto const& b : window) {
-        for (int row = 0; row < b->texels.numRows; ++row) {
-            coverage.rows.push_back(&b->isCovered[static_cast<size_t>(row) * width]);
-            bandOfRow.push_back(b.get());
-        }
-    }
-    auto const offsets = FindPadding(coverage, band.texels.firstRow, band.texels.numRows, padding);
-    size_t const numTexels = band.GetNumTexels(), numPlanes = band.planes.size() / numTexels;
-    size_t texel = 0;
-    for (int row = 0; row < band.texels.numRows; ++row) {
-        for (int column = 0; column < width; ++column, ++texel) {
-            int32_t const offset = offsets[texel];
-            if (offset == 0 || offset == kNoSource) continue;
-            int const y = row + band.texels.firstRow + GetOffsetY(offset);
-            Band const& source = *bandOfRow[y - coverage.firstRow];
-            size_t const from = static_cast<size_t>(y - source.texels.firstRow) * width + column + GetOffsetX(offset);
-            for (size_t plane = 0; plane < numPlanes; ++plane) {
-                band.planes[plane * numTexels + texel] = source.planes[plane * source.GetNumTexels() + from];
+/// Fills uncovered texels of a band from the covered ones round them, tile by tile; says in `isFilled` which.
+class Padder {
+public:
+    Padder(std::span<std::shared_ptr<Band> const> window, Band& band, int padding, std::vector<uint8_t>& isFilled)
+        : _band(band), _isFilled(isFilled), _coverage{window.front()->texels.firstRow, band.texels.width, {}} {
+        bool const isAnyCovered = std::any_of(window.begin(), window.end(), [](auto const& b) { return b->numCovered > 0; });
+        _hasWork = padding > 0 && isAnyCovered && band.numCovered < band.GetNumTexels();
+        if (!_hasWork) return;
+        for (auto const& b : window) {
+            for (int row = 0; row < b->texels.numRows; ++row) {
+                _coverage.rows.push_back(&b->isCovered[static_cast<size_t>(row) * band.texels.width]);
+                _bandOfRow.push_back(b.get());
             }
-            isFilled[texel] = 1;
         }
     }
-    return isFilled;
-}
+
+    bool HasWork() const { return _hasWork; }
+    CoverageRows const& GetCoverage() const { return _coverage; }
+
+    void PadTile(PaddingSearch& search, int firstColumn, int numColumns) const {
+        TexelBand const& texels = _band.texels;
+        if (!search.Find(texels.firstRow, texels.numRows, firstColumn, numColumns)) return;
+        size_t const numTexels = _band.GetNumTexels(), numPlanes = _band.planes.size() / numTexels;
+        size_t const width = static_cast<size_t>(texels.width);
+        int32_t const* offset = search.GetOffsets().data();
+        for (int row = 0; row < texels.numRows; ++row) {
+            for (int column = firstColumn; column < firstColumn + numColumns; ++column, ++offset) {
+                if (*offset == 0 || *offset == PaddingSearch::kNoSource) continue;
+                int const y = row + texels.firstRow + PaddingSearch::GetOffsetY(*offset);
+                Band const& source = *_bandOfRow[y - _coverage.firstRow];
+                size_t const to = static_cast<size_t>(row) * width + column;
+                size_t const from = static_cast<size_t>(y - source.texels.firstRow) * width + column +
+                                    PaddingSearch::GetOffsetX(*offset);
+                for (size_t plane = 0; plane < numPlanes; ++plane) {
+                    _band.planes[plane * numTexels + to] = source.planes[plane * source.GetNumTexels() + from];
+                }
+                _isFilled[to] = 1;
+            }
+        }
+    }
+
+private:
+    Band& _band;
+    std::vector<uint8_t>& _isFilled;
+    CoverageRows _coverage;
+    std::vector<Band const*> _bandOfRow;
+    bool _hasWork = false;
+};
 
 bool IsEmpty(std::vector<uint8_t> const& isFilled, size_t width, int firstColumn, int numColumns) {
     size_t const first = static_cast<size_t>(firstColumn);
@@ -63,9 +78,20 @@ PackedBand PackBand(std::span<std::shared_ptr<Band> const> window, Band& band, i
     PackedBand packed;
     packed.index = band.index;
     packed.files.resize(files.size());
-    std::vector<uint8_t> const isFilled = Pad(window, band, padding);
+    std::vector<uint8_t>& isFilled = band.isFilled;
+    isFilled = band.isCovered;
     size_t const width = static_cast<size_t>(band.texels.width), numTexels = band.GetNumTexels();
     int const T = ExrSpec::kTileSize, numTiles = (band.texels.width + T - 1) / T;
+    Padder const padder(window, band, padding, isFilled);
+    if (padder.HasWork()) {
+        tbb::parallel_for(tbb::blocked_range<int>(0, numTiles), [&](auto const& tiles) {
+            CheckInterrupted();
+            PaddingSearch search(padder.GetCoverage(), padding);
+            for (int tile = tiles.begin(); tile != tiles.end(); ++tile) {
+                padder.PadTile(search, tile * T, std::min(T, band.texels.width - tile * T));
+            }
+        });
+    }
     std::vector<float> coverage;
     if (hasCoverage || needsRows) {
         coverage.resize(numTexels);

@@ -3,39 +3,48 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/bake/texture_cell.h"
 #include "eval/patch_polynomial.h"
-#include "eval/surface_kernel.h"
 #include "eval/surface_sample.h"
 
 namespace limn::engine {
 
 namespace {
 
-constexpr double kCoveredTexels = 1e-4;  // a texel this near to a face is covered (bake.md)
 constexpr double kClampParameter = 1e-6;
 constexpr double kOverlapParameter = 1e-3;  // nearer to an edge two faces may well share a texel
-constexpr int kMaxNewtonSteps = 12;
 constexpr int kMaxDepth = 30;       // pieces below 2^-30 of a face are linear to any precision
-constexpr size_t kFlushAt = 1024;   // candidates per Newton batch
 
-/// Bound of how fast the map's Jacobian changes from texel to texel, where it is u[1..2], v[1..2].
-double FindBend(TexturePiece const& piece, std::array<double, 3> const& u, std::array<double, 3> const& v) {
-    double const det = u[1] * v[2] - u[2] * v[1];
-    double const size = u[1] * u[1] + u[2] * u[2] + v[1] * v[1] + v[2] * v[2];
-    double const second = 2.0 * std::hypot(piece.GetStray(0, 1.0), piece.GetStray(1, 1.0));
-    return det == 0.0 ? 1e300 : second * size / (det * det);  // |inverse|^2 <= size / det^2
+/// Where the run of texels from `begin` on that lie inside and have no owner ends.
+int FindEndOfHits(eval::Whereabouts const* where, Index const* owner, int begin, int end) {
+    auto const isHit = [&](int i) { return (where[i] == eval::Whereabouts::Inside) & (owner[i] < 0); };
+    constexpr int kGroup = 8;
+    int i = begin;
+    for (bool areHits = true; i + kGroup <= end; i += kGroup) {
+        for (int k = 0; k < kGroup; ++k) areHits &= isHit(i + k);
+        if (!areHits) break;
+    }
+    while (i < end && isHit(i)) ++i;
+    return i;
 }
 
 }  // namespace
 
-void TexelBand::Reset(int first, int rows, int tileWidth) {
+void TexelBand::Resize(int first, int rows, int tileWidth) {
     firstRow = first;
     numRows = rows;
     width = tileWidth;
     size_t const count = static_cast<size_t>(rows) * tileWidth;
-    owner.assign(count, -1);
-    overlap.assign(count, 0);
-    failed.assign(count, 0);
+    owner.resize(count);
+    overlap.resize(count);
+    failed.resize(count);
+}
+
+void TexelBand::Reset(int first, int rows, int tileWidth) {
+    Resize(first, rows, tileWidth);
+    std::fill(owner.begin(), owner.end(), -1);
+    std::fill(overlap.begin(), overlap.end(), uint8_t{0});
+    std::fill(failed.begin(), failed.end(), uint8_t{0});
 }
 
 UVRaster::UVRaster(eval::LimitSurface const& surface, std::span<double const> uvs)
@@ -149,128 +158,83 @@ void UVRaster::RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain cons
 }
 
 void UVRaster::RasterCell(TexturePiece const& piece, double x, double y, double half, TexelHits& hits) {
-    auto const u = piece.Evaluate(0, x, y), v = piece.Evaluate(1, x, y);
-    // How far the map strays from its linear part within the cell, plus what counts as covered.
-    double const stray[2] = {piece.GetStray(0, half) + 10 * kCoveredTexels, piece.GetStray(1, half) + 10 * kCoveredTexels};
-    double const bend = FindBend(piece, u, v);
-    double const cx = piece.originX + u[0], cy = piece.originY + v[0];
-    double const us = u[1], ut = u[2], vs = v[1], vt = v[2];
-    double const reachX = (std::abs(us) + std::abs(ut)) * half + stray[0];
-    double const reachY = (std::abs(vs) + std::abs(vt)) * half + stray[1];
-    int const firstY = std::max(_band->firstRow, static_cast<int>(std::ceil(cy - reachY)));
-    int const lastY = std::min(_band->firstRow + _band->numRows - 1, static_cast<int>(std::floor(cy + reachY)));
-    double const det = us * vt - ut * vs;
-    double const size = us * us + ut * ut + vs * vs + vt * vt;
-    bool const isInvertible = std::abs(det) > 1e-9 * size;
-    double const inverse = isInvertible ? 1.0 / det : 0.0;
-    double const limitS = half + (stray[0] * std::abs(vt) + stray[1] * std::abs(ut)) * std::abs(inverse);
-    double const limitT = half + (stray[0] * std::abs(vs) + stray[1] * std::abs(us)) * std::abs(inverse);
-    for (int row = firstY; row <= lastY; ++row) {
-        double from = cx - reachX, to = cx + reachX;
-        double const dy = row - cy;
-        if (isInvertible) {
-            // ds = (vt dx - ut dy) / det and dt = (us dy - vs dx) / det must stay within the cell.
-            auto const narrow = [&](double slope, double constant, double limit) {
-                if (std::abs(slope) < 1e-12) {
-                    if (std::abs(constant) > limit) to = from - 1.0;
-                    return;
-                }
-                double const a = (-limit - constant) / slope, b = (limit - constant) / slope;
-                from = std::max(from, cx + std::min(a, b));
-                to = std::min(to, cx + std::max(a, b));
-            };
-            narrow(vt * inverse, -ut * dy * inverse, limitS);
-            narrow(-vs * inverse, us * dy * inverse, limitT);
-        }
-        if (from > to) continue;
-        int const firstX = std::max(_firstColumn, static_cast<int>(std::ceil(std::max(from, -1.0))));
-        int const lastX = std::min(_lastColumn, static_cast<int>(std::floor(std::min(to, 1e9))));
-        AddRow(piece, row, firstX, lastX);
-        if (_texel.size() >= kFlushAt) Flush(piece, x, y, half, bend, hits);
+    TextureCell cell(piece, x, y, half);
+    _rows.clear();
+    auto const [low, high] = cell.FindRows();
+    int const firstRow = std::max(_band->firstRow, static_cast<int>(std::ceil(std::max(low, -1.0))));
+    int const lastRow = std::min(_band->firstRow + _band->numRows - 1, static_cast<int>(std::floor(std::min(high, 1e9))));
+    int numTexels = 0;
+    for (int row = firstRow; row <= lastRow; ++row) {
+        auto const [from, to] = cell.FindColumns(row);
+        int const first = std::max(_firstColumn, static_cast<int>(std::ceil(std::clamp(from, -1.0, 1e9))));
+        int const last = std::min(_lastColumn, static_cast<int>(std::floor(std::clamp(to, -1.0, 1e9))));
+        if (first > last) continue;
+        _rows.push_back({row, first, last - first + 1, numTexels});
+        numTexels += last - first + 1;
     }
-    Flush(piece, x, y, half, bend, hits);
-}
-
-void UVRaster::AddRow(TexturePiece const& piece, int row, int firstX, int lastX) {
-    if (firstX > lastX) return;
-    size_t const start = _texel.size(), count = static_cast<size_t>(lastX - firstX + 1);
-    _texel.resize(start + count);
-    _targetX.resize(start + count);
-    _targetY.resize(start + count);
-    int const texel = (row - _band->firstRow) * _band->width + firstX;
-    double const x = firstX - piece.originX, y = row - piece.originY;
-    // Accept will ask who owns these texels.
-    for (size_t i = 0; i < count; i += 16) __builtin_prefetch(&_band->owner[static_cast<size_t>(texel) + i], 1);
-    for (size_t i = 0; i < count; ++i) {
-        _texel[start + i] = texel + static_cast<int>(i);
-        _targetX[start + i] = x + static_cast<double>(static_cast<int>(i));
-        _targetY[start + i] = y;
-    }
-}
-
-/// Solves for the candidates gathered in the cell about (x, y).
-void UVRaster::Flush(TexturePiece const& piece, double x, double y, double half, double bend, TexelHits& hits) {
-    size_t const count = _texel.size();
-    if (count == 0) return;
-    size_t const padded = (count + eval::kInversionLanes - 1) / eval::kInversionLanes * eval::kInversionLanes;
-    _targetX.resize(padded, _targetX.back());
-    _targetY.resize(padded, _targetY.back());
-    _x.resize(padded);
-    _y.resize(padded);
-    _residual.resize(padded);
-    constexpr double kMargin = 0.25;  // iterates may leave the domain this far on their way
-    eval::InvertTextureMap({.coefficients = &piece.coefficients[0][0],
-                            .targetX = _targetX.data(),
-                            .targetY = _targetY.data(),
-                            .startX = x,
-                            .startY = y,
-                            .reach = 2.0 * half,
-                            .bend = bend,
-                            .low = -_tree.GetCentre() - kMargin,
-                            .high = 1.0 - _tree.GetCentre() + kMargin,
-                            .x = _x.data(),
-                            .y = _y.data(),
-                            .residual = _residual.data(),
-                            .count = static_cast<int>(count),
-                            .maxSteps = kMaxNewtonSteps},
-                           _isTriangle);
+    if (_rows.empty()) return;
+    GatherTargets(piece, numTexels);
+    eval::FitInverse(cell.GetModel(), numTexels);
+    eval::InvertTextureMap(cell.GetModel(), _targetX.data(), _targetY.data(), numTexels, _x.data(), _y.data(), _where.data());
     Accept(piece, hits);
-    _texel.clear();
-    _targetX.clear();
-    _targetY.clear();
 }
 
-/// Keeps the candidates that the face covers.
-void UVRaster::Accept(TexturePiece const& piece, TexelHits& hits) {
-    size_t const count = _texel.size(), start = hits.texel.size();
-    hits.texel.resize(start + count);
-    hits.s.resize(start + count);
-    hits.t.resize(start + count);
-    size_t end = start;
-    double const centre = _tree.GetCentre(), scale = piece.domain.scale;
-    double const originS = piece.domain.origin[0], originT = piece.domain.origin[1];
-    for (size_t i = 0; i < count; ++i) {
-        Index& owner = _band->owner[_texel[i]];
-        if (owner == _face) continue;  // found from a neighbouring cell or piece before
-        double s = _x[i] + centre, t = _y[i] + centre;
-        bool const isPlainHit = owner < 0 && _residual[i] <= kCoveredTexels && s >= 0.0 && t >= 0.0 &&
-                                (_isTriangle ? s + t <= 1.0 : s <= 1.0 && t <= 1.0);
-        if (!isPlainHit && !IsCovered(piece, i, s, t)) continue;
-        owner = _face;
-        hits.texel[end] = _texel[i];
-        hits.s[end] = originS + scale * s;
-        hits.t[end] = originT + scale * t;
-        ++end;
+/// Lists the texels of the rows about the piece's origin, and makes room for the answers.
+void UVRaster::GatherTargets(TexturePiece const& piece, int numTexels) {
+    constexpr size_t kLanes = eval::kInversionLanes;
+    size_t const padded = (static_cast<size_t>(numTexels) + kLanes - 1) / kLanes * kLanes;
+    if (_x.size() < padded) {
+        for (auto* values : {&_targetX, &_targetY, &_x, &_y}) values->resize(padded);
+        _where.resize(padded);
     }
-    hits.texel.resize(end);
-    hits.s.resize(end);
-    hits.t.resize(end);
+    for (TexelRow const& row : _rows) {
+        double const x = row.column - piece.originX, y = row.row - piece.originY;
+        double *const toX = &_targetX[row.first], *const toY = &_targetY[row.first];
+        for (int i = 0; i < row.count; ++i) {
+            toX[i] = x + i;
+            toY[i] = y;
+        }
+    }
+    for (size_t i = static_cast<size_t>(numTexels); i < padded; ++i) {
+        _targetX[i] = _targetX[i - 1];
+        _targetY[i] = _targetY[i - 1];
+    }
+}
+
+/// Keeps the texels of the cell's rows that the face covers.
+void UVRaster::Accept(TexturePiece const& piece, TexelHits& hits) {
+    double const centre = _tree.GetCentre(), scale = piece.domain.scale;
+    auto const placeS = [&](double s) { return piece.domain.origin[0] + scale * s; };
+    auto const placeT = [&](double t) { return piece.domain.origin[1] + scale * t; };
+    for (TexelRow const& row : _rows) {
+        int const texel = (row.row - _band->firstRow) * _band->width + row.column;
+        Index* const owner = &_band->owner[texel];
+        eval::Whereabouts const* const where = &_where[row.first];
+        double const *const x = &_x[row.first], *const y = &_y[row.first];
+        for (int i = 0; i < row.count; ++i) {
+            int const end = FindEndOfHits(where, owner, i, row.count);
+            if (end > i) {
+                hits.AddRun(texel + i, end - i, [&](int k) { return placeS(x[i + k] + centre); },
+                            [&](int k) { return placeT(y[i + k] + centre); });
+                std::fill(owner + i, owner + end, _face);
+                i = end;
+                if (i == row.count) break;
+            }
+            // Outside, or found from a neighbouring cell or piece before.
+            if (where[i] == eval::Whereabouts::Outside || owner[i] == _face) continue;
+            double s = x[i] + centre, t = y[i] + centre;
+            size_t const target = static_cast<size_t>(row.first + i);
+            if (!IsCovered(piece, texel + i, where[i] != eval::Whereabouts::Unsolved, _targetX[target], _targetY[target], s, t)) continue;
+            owner[i] = _face;
+            hits.AddRun(texel + i, 1, [&](int) { return placeS(s); }, [&](int) { return placeT(t); });
+        }
+    }
 }
 
 /// The cases that are not plain hits: at or outside the domain's edge, claimed by another face, or not
 /// converged. Clamps (s, t) to the domain; true if the texel is to be this face's.
-bool UVRaster::IsCovered(TexturePiece const& piece, size_t candidate, double& s, double& t) {
-    int const texel = _texel[candidate];
+bool UVRaster::IsCovered(TexturePiece const& piece, int texel, bool isSolved, double targetX, double targetY, double& s,
+                         double& t) {
     double const centre = _tree.GetCentre();
     // The nearest place of the domain.
     double cs = std::clamp(s, 0.0, 1.0), ct = std::clamp(t, 0.0, 1.0);
@@ -280,15 +244,15 @@ bool UVRaster::IsCovered(TexturePiece const& piece, size_t candidate, double& s,
         ct = 1.0 - cs;
     }
     double const outside = std::max(std::abs(cs - s), std::abs(ct - t));
-    if (_residual[candidate] > kCoveredTexels) {
-        auto const found = SearchPiece(piece, _targetX[candidate], _targetY[candidate], kCoveredTexels, cs, ct);
+    if (!isSolved) {
+        auto const found = SearchPiece(piece, targetX, targetY, kCoveredTexels, cs, ct);
         if (found == SearchResult::Undecided) _band->failed[texel] = 1;
         if (found != SearchResult::Found) return false;
     } else if (outside > kClampParameter) {
         if (outside > 0.2) return false;
         // Outside; covered only if the domain's edge passes within kCoveredTexels.
-        double const dx = piece.Evaluate(0, cs - centre, ct - centre)[0] - _targetX[candidate];
-        double const dy = piece.Evaluate(1, cs - centre, ct - centre)[0] - _targetY[candidate];
+        double const dx = piece.Evaluate(0, cs - centre, ct - centre)[0] - targetX;
+        double const dy = piece.Evaluate(1, cs - centre, ct - centre)[0] - targetY;
         if (dx * dx + dy * dy > kCoveredTexels * kCoveredTexels) return false;
     }
     if (_band->owner[texel] >= 0) {

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "engine/bake/texture_piece.h"
+#include "engine/uninitialized.h"
+#include "eval/inversion_kernel.h"
 #include "eval/limit_surface.h"
 
 namespace limn::engine {
@@ -30,13 +32,28 @@ struct TexelBand {
     std::vector<uint8_t> overlap;  ///< 1 where another face covers it too, apart from shared edges
     std::vector<uint8_t> failed;   ///< 1 where a search came to no end
 
-    void Reset(int first, int rows, int tileWidth);
+    void Resize(int first, int rows, int tileWidth);  ///< texels keep what they held
+    void Reset(int first, int rows, int tileWidth);   ///< no texel is covered
 };
 
 /// A texel covered by a face, and where on it.
 struct TexelHits {
-    std::vector<int> texel;  ///< index into the band
-    std::vector<double> s, t;
+    UninitializedVector<int> texel;  ///< index into the band
+    UninitializedVector<double> s, t;
+
+    /// Adds `count` texels side by side, at places (placeS(i), placeT(i)).
+    template <class S, class T>
+    void AddRun(int first, int count, S placeS, T placeT) {
+        size_t const at = texel.size(), end = at + static_cast<size_t>(count);
+        texel.resize(end);
+        s.resize(end);
+        t.resize(end);
+        for (int i = 0; i < count; ++i) {
+            texel[at + i] = first + i;
+            s[at + i] = placeS(i);
+            t[at + i] = placeT(i);
+        }
+    }
     void Clear() {
         texel.clear();
         s.clear();
@@ -54,7 +71,7 @@ struct UVBounds {
 ///
 /// Search   the map's polynomial pieces are cut into cells on which it deviates from linear by less
 ///          than half a texel; the linear map of a cell, grown by that deviation, gives candidates
-///          and a start for Newton's method on the exact map.
+///          row by row, and eval::InvertTextureMap finds where they lie on the exact map.
 /// Threads  one per thread
 class UVRaster {
 public:
@@ -84,10 +101,10 @@ private:
     void RasterNode(int node, int depth, TexelHits& hits);
     void RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain const& domain, TexelHits& hits);
     void RasterCell(TexturePiece const& piece, double x, double y, double half, TexelHits& hits);
-    void AddRow(TexturePiece const& piece, int row, int firstX, int lastX);
-    void Flush(TexturePiece const& piece, double x, double y, double half, double bend, TexelHits& hits);
+    void GatherTargets(TexturePiece const& piece, int numTexels);
     void Accept(TexturePiece const& piece, TexelHits& hits);
-    bool IsCovered(TexturePiece const& piece, size_t candidate, double& s, double& t);
+    bool IsCovered(TexturePiece const& piece, int texel, bool isSolved, double targetX, double targetY, double& s,
+                   double& t);
 
     eval::FaceTree _tree;
     bool _isTriangle;
@@ -97,9 +114,14 @@ private:
     TileGrid _grid;
     TexelBand* _band = nullptr;
     int _firstColumn = 0, _lastColumn = 0;
-    // candidates of the piece at hand
-    std::vector<int> _texel;
-    std::vector<double> _targetX, _targetY, _x, _y, _residual;
+    // candidates of the cell at hand, row by row, and the answers for them
+    struct TexelRow {
+        int row, column, count;
+        int first;  // into the arrays below
+    };
+    std::vector<TexelRow> _rows;
+    std::vector<double> _targetX, _targetY, _x, _y;
+    std::vector<eval::Whereabouts> _where;
 };
 
 }  // namespace limn::engine
