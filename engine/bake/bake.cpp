@@ -75,13 +75,13 @@ public:
           _numPlanes(file.numPlanes),
           _buffers(static_cast<size_t>(spec.GetNumLevels())),
           _chain(spec.width, spec.height, spec.GetNumLevels(), file.numPlanes, file.groups,
-                 [this](int level, int row, TexelRow const& texels) { AddRow(level, row, texels); }) {}
+                 [this](int level, int row, TexelRowView const& texels) { AddRow(level, row, texels); }) {}
 
-    void Add(TexelRow const& row) { _chain.Add(row); }
+    void Add(std::span<TexelRowView const> rows) { _chain.Add(rows); }
     size_t GetNumClamped() const { return _numClamped; }
 
 private:
-    void AddRow(int level, int row, TexelRow const& texels) {
+    void AddRow(int level, int row, TexelRowView const& texels) {
         int const T = ExrSpec::kTileSize, width = _spec.GetLevelWidth(level), height = _spec.GetLevelHeight(level);
         size_t const w = static_cast<size_t>(width), planeSize = w * T;
         auto& buffer = _buffers[level];
@@ -89,9 +89,9 @@ private:
         buffer.resize(planeSize * numChannels);
         size_t const at = static_cast<size_t>(row % T) * w;
         for (int c = 0; c < _numPlanes; ++c) {
-            std::copy_n(&texels.values[c * w], w, &buffer[c * planeSize + at]);
+            std::copy_n(texels.values + c * texels.stride, w, &buffer[c * planeSize + at]);
         }
-        if (_hasCoverage) std::copy_n(texels.coverage.data(), w, &buffer[_numPlanes * planeSize + at]);
+        if (_hasCoverage) std::copy_n(texels.coverage, w, &buffer[_numPlanes * planeSize + at]);
         if (row % T != T - 1 && row != height - 1) return;
         std::vector<ExrTile> tiles(static_cast<size_t>((width + T - 1) / T));
         tbb::parallel_for(size_t{0}, tiles.size(), [&](size_t tile) {
@@ -284,7 +284,7 @@ void TileJob::Run() {
                 tbb::filter_mode::parallel,
                 [&](Work work) -> std::shared_ptr<PackedBand> {
                     if (work.window.empty()) return nullptr;
-                    return std::make_shared<PackedBand>(PackBand(work.window, *work.window[work.at], _options.padding,
+                    return std::make_shared<PackedBand>(PackBand(work.window, work.at, _options.padding,
                                                                  _layouts, _writers, _options.hasCoverage, needsRows));
                 }) &
             tbb::make_filter<std::shared_ptr<PackedBand>, void>(
@@ -305,11 +305,9 @@ void TileJob::Write(PackedBand const& band) {
             file.numClamped += tile.numClamped;
             _writers[f]->Write(tile);
         }
-        int row = band.index * Band::kRows;
-        for (TexelRow const& texels : packed.rows) {
-            for (PreviewBuilder& preview : file.previews) preview.Add(row, texels);
-            if (file.mips) file.mips->Add(texels);
-            ++row;
+        if (file.mips) file.mips->Add(packed.rows);
+        for (size_t row = 0; row < packed.rows.size(); ++row) {
+            for (PreviewBuilder& preview : file.previews) preview.Add(band.index * Band::kRows + static_cast<int>(row), packed.rows[row]);
         }
         file.output.min = std::min(file.output.min, packed.min);
         file.output.max = std::max(file.output.max, packed.max);

@@ -72,10 +72,12 @@ bool IsEmpty(std::vector<uint8_t> const& isFilled, size_t width, int firstColumn
 
 }  // namespace
 
-PackedBand PackBand(std::span<std::shared_ptr<Band> const> window, Band& band, int padding,
+PackedBand PackBand(std::span<std::shared_ptr<Band> const> window, size_t at, int padding,
                     std::vector<FileLayout> const& files, std::vector<std::unique_ptr<ExrWriter>> const& writers,
                     bool hasCoverage, bool needsRows) {
     PackedBand packed;
+    packed.band = window[at];
+    Band& band = *packed.band;
     packed.index = band.index;
     packed.files.resize(files.size());
     std::vector<uint8_t>& isFilled = band.isFilled;
@@ -92,7 +94,7 @@ PackedBand PackBand(std::span<std::shared_ptr<Band> const> window, Band& band, i
             }
         });
     }
-    std::vector<float> coverage;
+    std::vector<float>& coverage = packed.coverage;
     if (hasCoverage || needsRows) {
         coverage.resize(numTexels);
         for (size_t texel = 0; texel < numTexels; ++texel) coverage[texel] = band.GetCoverage(texel);
@@ -119,15 +121,8 @@ PackedBand PackBand(std::span<std::shared_ptr<Band> const> window, Band& band, i
         });
         if (!needsRows) continue;
         for (int row = 0; row < band.texels.numRows; ++row) {
-            TexelRow texels;
-            size_t const at = static_cast<size_t>(row) * width;
-            for (int c = 0; c < file.numPlanes; ++c) {
-                float const* const from = filePlanes + c * numTexels + at;
-                texels.values.insert(texels.values.end(), from, from + width);
-            }
-            texels.coverage.assign(&coverage[at], &coverage[at] + width);
-            texels.isFilled.assign(&isFilled[at], &isFilled[at] + width);
-            out.rows.push_back(std::move(texels));
+            size_t const texel = static_cast<size_t>(row) * width;
+            out.rows.push_back({filePlanes + texel, numTexels, &coverage[texel], &isFilled[texel]});
         }
     }
     return packed;

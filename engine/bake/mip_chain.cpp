@@ -26,13 +26,13 @@ std::array<float, 3> FindMainLine(std::array<double, 6> const& m) {
     return {static_cast<float>(v[0] / length), static_cast<float>(v[1] / length), static_cast<float>(v[2] / length)};
 }
 
-namespace {
-
 /// Which finer texels a coarser one holds along one axis, and how much of each.
 struct Box {
     int first, count;
     float weights[3];
 };
+
+namespace {
 
 Box FindBox(int fine, int coarse, int at) {
     if (fine == coarse) return {at, 1, {1.0f, 0.0f, 0.0f}};
@@ -59,12 +59,32 @@ MipChain::MipChain(int width, int height, int numLevels, int numChannels, std::v
         Level l;
         l.width = std::max(1, width >> level);
         l.height = std::max(1, height >> level);
-        l.window.resize(3);
         _levels.push_back(std::move(l));
     }
 }
 
-void MipChain::AddRow(int level, TexelRow const& row) {
+void MipChain::Add(std::span<TexelRowView const> rows) {
+    for (TexelRowView const& row : rows) AddRow(0, row);
+    // What a box may still ask for, once the rows given are gone.
+    for (int row = std::max(0, _levels[0].numRows - 2); row < _levels[0].numRows; ++row) Keep(_levels[0], row);
+}
+
+/// Copies a row of the window into memory of its own.
+void MipChain::Keep(Level& level, int row) {
+    TexelRowView& view = level.window[row % 3];
+    TexelRow& kept = level.kept[row % 3];
+    if (view.coverage == kept.coverage.data()) return;
+    size_t const width = static_cast<size_t>(level.width);
+    kept.values.resize(width * _numChannels);
+    for (size_t c = 0; c < static_cast<size_t>(_numChannels); ++c) {
+        std::copy_n(view.values + c * view.stride, width, &kept.values[c * width]);
+    }
+    kept.coverage.assign(view.coverage, view.coverage + width);
+    kept.isFilled.assign(view.isFilled, view.isFilled + width);
+    view = kept.GetView();
+}
+
+void MipChain::AddRow(int level, TexelRowView const& row) {
     if (level > 0) _emit(level, _levels[level].numRows, row);
     Level& from = _levels[level];
     if (level + 1 == static_cast<int>(_levels.size())) {
@@ -73,22 +93,24 @@ void MipChain::AddRow(int level, TexelRow const& row) {
     }
     from.window[from.numRows % 3] = row;
     ++from.numRows;
-    Level const& to = _levels[level + 1];
+    Level& to = _levels[level + 1];
     while (to.numRows < to.height) {
         Box const box = FindBox(from.height, to.height, to.numRows);
         if (box.first + box.count > from.numRows) break;
-        AddRow(level + 1, Reduce(from, to.width, to.height, to.numRows));
+        TexelRow& result = to.kept[to.numRows % 3];
+        Reduce(from, to.numRows, to.width, to.height, result);
+        AddRow(level + 1, result.GetView());
     }
 }
 
 void MipChain::AverageTexel(std::span<float const> weights, std::span<float const* const> values,
-                            std::span<size_t const> at, size_t stride, float* out, size_t outStride) const {
+                            std::span<size_t const> strides, float* out, size_t outStride) const {
     for (ChannelGroup const& group : _groups) {
         if (group.averaging == Averaging::Line) {
             std::array<double, 6> sum{};
             for (size_t k = 0; k < weights.size(); ++k) {
                 double d[3];
-                for (int c = 0; c < 3; ++c) d[c] = values[k][static_cast<size_t>(group.first + c) * stride + at[k]];
+                for (int c = 0; c < 3; ++c) d[c] = values[k][static_cast<size_t>(group.first + c) * strides[k]];
                 int index = 0;
                 for (int a = 0; a < 3; ++a) {
                     for (int b = a; b < 3; ++b) sum[index++] += static_cast<double>(weights[k]) * d[a] * d[b];
@@ -103,7 +125,7 @@ void MipChain::AverageTexel(std::span<float const> weights, std::span<float cons
         for (int c = group.first; c < group.first + group.count; ++c) {
             float sum = 0.0f;
             for (size_t k = 0; k < weights.size(); ++k) {
-                sum += weights[k] * values[k][static_cast<size_t>(c) * stride + at[k]];
+                sum += weights[k] * values[k][static_cast<size_t>(c) * strides[k]];
             }
             float const mean = sum / total;
             out[static_cast<size_t>(c) * outStride] = mean;
@@ -118,76 +140,78 @@ void MipChain::AverageTexel(std::span<float const> weights, std::span<float cons
     }
 }
 
-/// The two common cases of a 2 x 2 box: fully covered (no lines among the channels), and empty.
-bool MipChain::ReduceQuarter(Level const& from, int row, int x, TexelRow& result) const {
-    TexelRow const &top = from.window[row % 3], &bottom = from.window[(row + 1) % 3];
-    size_t const at = 2 * static_cast<size_t>(x), fineWidth = static_cast<size_t>(from.width);
-    if (!(top.isFilled[at] | top.isFilled[at + 1] | bottom.isFilled[at] | bottom.isFilled[at + 1])) return true;
-    bool const isCovered = top.coverage[at] == 1.0f && top.coverage[at + 1] == 1.0f && bottom.coverage[at] == 1.0f &&
-                           bottom.coverage[at + 1] == 1.0f;
-    if (!isCovered || _hasLines) return false;
-    size_t const width = result.coverage.size(), to = static_cast<size_t>(x);
+/// All boxes of 2 x 2 as if they were covered, which most are, or empty; the others are for ReduceBox.
+void MipChain::ReduceQuarters(TexelRowView const& top, TexelRowView const& bottom, TexelRow& result) const {
+    size_t const width = result.coverage.size();
+    std::vector<float> squares;
     for (ChannelGroup const& group : _groups) {
-        float lengthSquared = 0.0f;
+        bool const isUnit = group.averaging == Averaging::UnitVector;
+        squares.assign(isUnit ? width : 0, 0.0f);
         for (int c = group.first; c < group.first + group.count; ++c) {
-            size_t const plane = static_cast<size_t>(c) * fineWidth + at;
-            float const mean = 0.25f * ((top.values[plane] + top.values[plane + 1]) +
-                                        (bottom.values[plane] + bottom.values[plane + 1]));
-            result.values[static_cast<size_t>(c) * width + to] = mean;
-            lengthSquared += mean * mean;
+            float const* const a = top.values + static_cast<size_t>(c) * top.stride;
+            float const* const b = bottom.values + static_cast<size_t>(c) * bottom.stride;
+            float* const out = &result.values[static_cast<size_t>(c) * width];
+            for (size_t x = 0; x < width; ++x) out[x] = 0.25f * ((a[2 * x] + a[2 * x + 1]) + (b[2 * x] + b[2 * x + 1]));
+            if (isUnit) for (size_t x = 0; x < width; ++x) squares[x] += out[x] * out[x];
         }
-        if (group.averaging != Averaging::UnitVector || !(lengthSquared > 0.0f)) continue;
-        float const toUnit = 1.0f / std::sqrt(lengthSquared);
+        if (!isUnit) continue;
+        for (float& square : squares) square = square > 0.0f ? 1.0f / std::sqrt(square) : 1.0f;
         for (int c = group.first; c < group.first + group.count; ++c) {
-            result.values[static_cast<size_t>(c) * width + to] *= toUnit;
+            float* const out = &result.values[static_cast<size_t>(c) * width];
+            for (size_t x = 0; x < width; ++x) out[x] *= squares[x];
         }
     }
-    result.coverage[to] = 1.0f;
-    result.isFilled[to] = 1;
-    return true;
 }
 
-TexelRow MipChain::Reduce(Level const& from, int width, int height, int row) const {
-    TexelRow result;
-    size_t const w = static_cast<size_t>(width), fineWidth = static_cast<size_t>(from.width);
-    result.values.assign(w * _numChannels, 0.0f);
-    result.coverage.assign(w, 0.0f);
-    result.isFilled.assign(w, 0);
-    Box const rows = FindBox(from.height, height, row);
-    bool const isQuarter = rows.count == 2 && from.width == 2 * width;  // boxes of 2 x 2
-    float weights[9];
+/// Any box: the mean of what is covered in it, by area and coverage; where nothing is, of the padding.
+void MipChain::ReduceBox(Level const& from, Box const& rows, Box const& columns, int x, TexelRow& result) const {
+    float weights[9], covered = 0.0f;
     float const* values[9];
-    size_t at[9];
-    for (int x = 0; x < width; ++x) {
-        if (isQuarter && ReduceQuarter(from, rows.first, x, result)) continue;
-        Box const columns = FindBox(from.width, width, x);
-        // First what is covered; where nothing is, the padding.
-        float covered = 0.0f;
-        size_t count = 0;
-        for (bool const isPadding : {false, true}) {
-            if (isPadding && count > 0) break;
-            for (int j = 0; j < rows.count; ++j) {
-                TexelRow const& fine = from.window[(rows.first + j) % 3];
-                for (int i = 0; i < columns.count; ++i) {
-                    size_t const column = static_cast<size_t>(columns.first + i);
-                    float const area = rows.weights[j] * columns.weights[i];
-                    float const weight = isPadding ? (fine.isFilled[column] ? area : 0.0f)
-                                                   : area * fine.coverage[column];
-                    if (!(weight > 0.0f)) continue;
-                    weights[count] = weight;
-                    values[count] = fine.values.data();
-                    at[count] = column;
-                    ++count;
-                    if (!isPadding) covered += weight;
-                }
+    size_t strides[9], count = 0;
+    for (bool const isPadding : {false, true}) {
+        if (isPadding && count > 0) break;
+        for (int j = 0; j < rows.count; ++j) {
+            TexelRowView const& fine = from.window[(rows.first + j) % 3];
+            for (int i = 0; i < columns.count; ++i) {
+                int const column = columns.first + i;
+                float const area = rows.weights[j] * columns.weights[i];
+                float const weight = isPadding ? (fine.isFilled[column] ? area : 0.0f) : area * fine.coverage[column];
+                if (!(weight > 0.0f)) continue;
+                weights[count] = weight;
+                values[count] = fine.values + column;
+                strides[count++] = fine.stride;
+                if (!isPadding) covered += weight;
             }
         }
-        if (count == 0) continue;
-        result.coverage[x] = covered;
-        result.isFilled[x] = 1;
-        AverageTexel({weights, count}, {values, count}, {at, count}, fineWidth, &result.values[x], w);
     }
-    return result;
+    size_t const width = result.coverage.size();
+    result.coverage[x] = covered;
+    result.isFilled[x] = count > 0;
+    for (size_t c = 0; c < static_cast<size_t>(_numChannels); ++c) result.values[c * width + x] = 0.0f;
+    if (count > 0) AverageTexel({weights, count}, {values, count}, {strides, count}, &result.values[x], width);
+}
+
+void MipChain::Reduce(Level const& from, int row, int width, int height, TexelRow& result) const {
+    size_t const w = static_cast<size_t>(width);
+    result.values.resize(w * _numChannels);
+    result.coverage.resize(w);
+    result.isFilled.resize(w);
+    Box const rows = FindBox(from.height, height, row);
+    bool const isQuarter = rows.count == 2 && from.width == 2 * width && !_hasLines;  // boxes of 2 x 2
+    TexelRowView const &top = from.window[rows.first % 3], &bottom = from.window[(rows.first + 1) % 3];
+    if (isQuarter) ReduceQuarters(top, bottom, result);
+    for (int x = 0; x < width; ++x) {
+        int const at = 2 * x;
+        if (isQuarter) {
+            float const least = std::min(std::min(top.coverage[at], top.coverage[at + 1]),
+                                         std::min(bottom.coverage[at], bottom.coverage[at + 1]));
+            int const anyFilled = top.isFilled[at] | top.isFilled[at + 1] | bottom.isFilled[at] | bottom.isFilled[at + 1];
+            result.coverage[x] = least;
+            result.isFilled[x] = static_cast<uint8_t>(anyFilled);
+            if (least == 1.0f || !anyFilled) continue;
+        }
+        ReduceBox(from, rows, FindBox(from.width, width, x), x, result);
+    }
 }
 
 }  // namespace limn::engine

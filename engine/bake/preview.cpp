@@ -108,7 +108,7 @@ PreviewBuilder::PreviewBuilder(Map const& map, int firstChannel, int width, int 
       _sums(static_cast<size_t>(_width) * _height * map.GetNumChannels(), 0.0f),
       _weights(static_cast<size_t>(_width) * _height, 0.0f) {}
 
-void PreviewBuilder::Add(int row, TexelRow const& texels) {
+void PreviewBuilder::Add(int row, TexelRowView const& texels) {
     size_t const line = static_cast<size_t>(row / _factor) * _width;
     size_t const numTexels = _weights.size();
     for (int x = 0; x < _sourceWidth; ++x) {
@@ -118,7 +118,7 @@ void PreviewBuilder::Add(int row, TexelRow const& texels) {
         _weights[to] += weight;
         for (int c = 0; c < _map.GetNumChannels(); ++c) {
             _sums[c * numTexels + to] +=
-                weight * texels.values[static_cast<size_t>(_firstChannel + c) * _sourceWidth + x];
+                weight * texels.values[static_cast<size_t>(_firstChannel + c) * texels.stride + static_cast<size_t>(x)];
         }
     }
 }

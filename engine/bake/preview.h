@@ -16,7 +16,7 @@ public:
     /// \param firstChannel  of the map within the rows given to Add
     PreviewBuilder(Map const& map, int firstChannel, int width, int height);
 
-    void Add(int row, TexelRow const& texels);
+    void Add(int row, TexelRowView const& texels);
 
     /// An RGB picture, 8 bits a channel.
     struct Picture {
