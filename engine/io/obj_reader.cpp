@@ -16,8 +16,7 @@ constexpr size_t kMaxElements = std::numeric_limits<Index>::max() / 4;
 class ObjReader {
 public:
     ObjReader(std::string_view text, Scene& scene) : _scan(WithoutByteOrderMark(text), scene.path), _scene(scene) {
-        _scene.positions.reserve(text.size() / 12);
-        _scene.cage.faceVertices.reserve(text.size() / 16);
+        ReserveFor(text);
     }
 
     void Read() {
@@ -39,6 +38,25 @@ public:
 private:
     static std::string_view WithoutByteOrderMark(std::string_view text) {
         return text.starts_with("\xef\xbb\xbf") ? text.substr(3) : text;
+    }
+
+    /// Room for what the lines begin with, so that no array has to move while it grows.
+    void ReserveFor(std::string_view text) {
+        size_t numPositions = 0, numUVs = 0, numFaces = 0;
+        for (size_t at = 0; at + 2 < text.size(); ++at) {
+            bool const isBlank = text[at + 1] == ' ';
+            numPositions += text[at] == 'v' && isBlank;
+            numUVs += text[at] == 'v' && text[at + 1] == 't';
+            numFaces += text[at] == 'f' && isBlank;
+            at = text.find('\n', at);
+            if (at == std::string_view::npos) break;
+        }
+        _scene.positions.reserve(3 * numPositions);
+        _scene.uvs.reserve(2 * numUVs);
+        _scene.cage.faceSizes.reserve(numFaces);
+        _scene.faceLines.reserve(numFaces);
+        _scene.cage.faceVertices.reserve(4 * numFaces);  // most are quads
+        if (numUVs > 0) _faceUVs.reserve(4 * numFaces);
     }
 
     Index NumVertices() const { return static_cast<Index>(_scene.positions.size() / 3); }
