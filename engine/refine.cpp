@@ -1,18 +1,17 @@
 #include "engine/refine.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
 #include <span>
 
 #include <fmt/format.h>
-#include <opensubdiv/far/primvarRefiner.h>
 
 #include "engine/job.h"
 #include "eval/face_places.h"
+#include "eval/refine_values.h"
 #include "eval/surface_sample.h"
 #include "far_ext/error.h"
+#include "far_ext/refined_cage.h"
 #include "far_ext/refiner.h"
 
 namespace limn::engine {
@@ -21,37 +20,15 @@ namespace {
 
 using Level = Far::TopologyLevel;
 
-/// N doubles, as Far's refiner reads and blends them.
-template <size_t N>
-struct Row {
-    std::array<double, N> values;
-
-    void Clear() { values.fill(0.0); }
-    void AddWithWeight(Row const& other, double weight) {
-        for (size_t c = 0; c < N; ++c) values[c] += weight * other.values[c];
-    }
-};
-
 /// Refines values of length N through all levels: of vertices, or of a face-varying channel.
 template <size_t N>
-std::vector<double> RefineValues(Far::TopologyRefiner const& refiner, std::span<double const> base, int fvarChannel = -1) {
-    static_assert(sizeof(Row<N>) == N * sizeof(double));
-    Far::PrimvarRefinerReal<double> const primvars(refiner);
-    std::vector<Row<N>> rows(base.size() / N);
-    std::memcpy(rows.data(), base.data(), base.size_bytes());
+std::vector<double> RefineToLast(Far::TopologyRefiner const& refiner, std::span<double const> base, int fvarChannel = -1) {
+    std::vector<double> values(base.begin(), base.end());
     for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
         CheckInterrupted();
-        auto const topology = refiner.GetLevel(level);
-        bool const isFVar = fvarChannel >= 0;
-        std::vector<Row<N>> fine(
-            static_cast<size_t>(isFVar ? topology.GetNumFVarValues(fvarChannel) : topology.GetNumVertices()));
-        if (isFVar) primvars.InterpolateFaceVarying(level, rows, fine, fvarChannel);
-        else primvars.Interpolate(level, rows, fine);
-        rows = std::move(fine);
+        values = eval::RefineValues<N>(refiner, level, values, fvarChannel);
     }
-    std::vector<double> refined(rows.size() * N);
-    std::memcpy(refined.data(), rows.data(), refined.size() * sizeof(double));
-    return refined;
+    return values;
 }
 
 Primvar RefinePrimvar(Far::TopologyRefiner const& refiner, Primvar const& primvar) {
@@ -60,7 +37,7 @@ Primvar RefinePrimvar(Far::TopologyRefiner const& refiner, Primvar const& primva
     for (size_t c = 0; c < n; ++c) {
         std::vector<double> channel;
         for (size_t i = c; i < primvar.values.size(); i += n) channel.push_back(static_cast<double>(primvar.values[i]));
-        auto const refined = RefineValues<1>(refiner, channel);
+        auto const refined = RefineToLast<1>(refiner, channel);
         fine.values.resize(refined.size() * n);
         for (size_t i = 0; i < refined.size(); ++i) fine.values[i * n + c] = static_cast<float>(refined[i]);
     }
@@ -77,31 +54,6 @@ std::vector<Index> FindBaseFaces(Far::TopologyRefiner const& refiner) {
         base[face] = at;
     }
     return base;
-}
-
-/// Tags as the last level has them. Boundaries are sharp by rule and need none, unless the rule gives them
-/// no surface, where a tag tells which of them have one.
-void CopyTags(Level const& level, Sdc::Options::VtxBoundaryInterpolation boundary, far_ext::ControlMesh& cage) {
-    bool const isBoundaryByRule = boundary != Sdc::Options::VTX_BOUNDARY_NONE;
-    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
-        float const sharpness = level.GetEdgeSharpness(edge);
-        bool const isByRule = (isBoundaryByRule && level.IsEdgeBoundary(edge)) || level.IsEdgeNonManifold(edge);
-        if (sharpness <= 0.0f || isByRule) continue;
-        auto const ends = level.GetEdgeVertices(edge);
-        cage.creaseVertexPairs.insert(cage.creaseVertexPairs.end(), {ends[0], ends[1]});
-        cage.creaseSharpness.push_back(sharpness);
-    }
-    for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
-        float const sharpness = level.GetVertexSharpness(vertex);
-        bool const isByRule = level.IsVertexNonManifold(vertex) ||
-                              (boundary == Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER && level.IsVertexCorner(vertex));
-        if (sharpness <= 0.0f || isByRule) continue;
-        cage.cornerVertices.push_back(vertex);
-        cage.cornerSharpness.push_back(sharpness);
-    }
-    for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        if (level.IsFaceHole(face)) cage.holes.push_back(face);
-    }
 }
 
 /// Moves refined vertices to the limit: each vertex is a corner of one of its faces, evaluated there.
@@ -148,30 +100,13 @@ Scene RefineUniformly(Scene const& scene, int levels, bool toLimit) {
     Far::TopologyRefiner::UniformOptions uniform(levels);
     uniform.fullTopologyInLastLevel = true;
     refiner->RefineUniform(uniform);
-    Level const last = refiner->GetLevel(levels);
 
     Scene fine;
     fine.path = scene.path;
     fine.name = scene.name;
-    fine.cage.scheme = scene.cage.scheme;
-    fine.cage.options = scene.cage.options;
-    fine.cage.numVertices = last.GetNumVertices();
-    for (Index face = 0; face < last.GetNumFaces(); ++face) {
-        auto const vertices = last.GetFaceVertices(face);
-        fine.cage.faceSizes.push_back(vertices.size());
-        fine.cage.faceVertices.insert(fine.cage.faceVertices.end(), vertices.begin(), vertices.end());
-    }
-    CopyTags(last, scene.cage.options.GetVtxBoundaryInterpolation(), fine.cage);
-    fine.positions = RefineValues<3>(*refiner, scene.positions);
-    if (scene.HasUVs()) {
-        fine.uvs = RefineValues<2>(*refiner, scene.uvs, 0);
-        far_ext::FVarChannel channel{last.GetNumFVarValues(0), {}};
-        for (Index face = 0; face < last.GetNumFaces(); ++face) {
-            auto const values = last.GetFaceFVarValues(face, 0);
-            channel.valueIndices.insert(channel.valueIndices.end(), values.begin(), values.end());
-        }
-        fine.cage.fvarChannels.push_back(std::move(channel));
-    }
+    fine.cage = far_ext::MakeRefinedCage(*refiner, scene.cage);
+    fine.positions = RefineToLast<3>(*refiner, scene.positions);
+    if (scene.HasUVs()) fine.uvs = RefineToLast<2>(*refiner, scene.uvs, 0);
     for (Primvar const& primvar : scene.primvars) fine.primvars.push_back(RefinePrimvar(*refiner, primvar));
     std::vector<Index> const base = FindBaseFaces(*refiner);
     for (size_t kind = 0; kind < 3; ++kind) {

@@ -293,9 +293,8 @@ std::array<double, 2> FaceTree::GetBounds(int index, int channel) const {
 
 double const* FaceTree::GetOrigin(int node) const { return &_values[_nodes[node].origin]; }
 
-/// The child that holds (s,t), which become coordinates of that child.
-int FaceTree::ChildAt(double& s, double& t) const {
-    if (_isLoop) {
+int GetChildAt(bool isLoop, double& s, double& t) {
+    if (isLoop) {
         int child = 0;
         if (s >= 0.5) child = 1;
         else if (t >= 0.5) child = 2;
@@ -344,7 +343,7 @@ PatchPoint FaceTree::Locate(int domain, double s, double t, int maxDepth) {
             isMoved = true;
         }
         if (_nodes[node].depth > kLimitDepth + 1) break;
-        node = GetChild(node, ChildAt(s, t));
+        node = GetChild(node, GetChildAt(_isLoop, s, t));
     }
     PatchPoint leaf = IsLeaf(node) ? GetLeaf(node) : GetLinearLeaf(node);
     leaf.x = s - _centre;

@@ -51,6 +51,10 @@ private:
     std::vector<RingNode const*> _ringOfFace;  // null for plain patches
 };
 
+/// Which of a face's four children holds (s,t), as OpenSubdiv numbers them: one per corner (Loop: and the
+/// flipped triangle in the middle). (s,t) become coordinates of that child.
+int GetChildAt(bool isLoop, double& s, double& t);
+
 /// One polynomial piece of a face's limit surface with a point in it.
 struct PatchPoint {
     double const* coefficients = nullptr;  ///< [channel][16 or 15], see patch_polynomial.h
@@ -137,7 +141,6 @@ private:
     void Recentre(Node& node, double const* parentOrigin);
     void MakeCoefficients(Node& node);
     void MoveOut(double& s, double& t) const;
-    int ChildAt(double& s, double& t) const;
     template <class Visit, class VisitNear>
     void Split(int node, std::span<int> samples, std::span<double> s, std::span<double> t,
                int maxDepth, Visit& visit, VisitNear& visitNear);
@@ -190,7 +193,7 @@ void FaceTree::Split(int node, std::span<int> samples, std::span<double> s, std:
     size_t const base = static_cast<size_t>(samples.data() - _samples.data());
     size_t count[5] = {0, 0, 0, 0, 0};
     for (size_t i = 0; i < samples.size(); ++i) {
-        int const child = ChildAt(s[i], t[i]);
+        int const child = GetChildAt(_isLoop, s[i], t[i]);
         _childOfSample[base + i] = static_cast<unsigned char>(child);
         ++count[child + 1];
     }
