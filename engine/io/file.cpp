@@ -1,6 +1,8 @@
 #include "engine/io/file.h"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -37,6 +39,13 @@ struct Descriptor {
 };
 
 }  // namespace
+
+std::string GetEnding(std::string const& path) {
+    std::string ending = fs::path(path).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return ending;
+}
 
 InputFile::InputFile(std::string const& path) {
     Descriptor const file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};

@@ -23,6 +23,9 @@ private:
     size_t _size = 0;
 };
 
+/// A file's ending in small letters, with its dot: ".obj" of "Head.OBJ"; empty without one.
+std::string GetEnding(std::string const& path);
+
 /// SHA-256 of bytes, as 64 hexadecimal digits.
 std::string Sha256(std::string_view bytes);
 

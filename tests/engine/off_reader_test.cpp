@@ -166,7 +166,9 @@ TEST(MeshReader, ChoosesByEndingAndThenByFirstBytes) {
     for (std::string const name : {"a.off", "a.OFF", "a.mesh"}) {
         EXPECT_EQ(engine::ReadMesh(folder.Write(name, kQuad)).cage.numVertices, 4) << name;
     }
-    EXPECT_THROW(engine::ReadMesh(folder.Write("a.obj", kQuad)), Error);
+    for (std::string const name : {"a.obj", "a.OBJ", "a.PLY"}) {
+        EXPECT_THROW(engine::ReadMesh(folder.Write(name, kQuad)), Error) << name;
+    }
 }
 
 TEST(MeshReader, KnowsNameAndChecksumOfTheFile) {
