@@ -41,7 +41,7 @@ public:
     /// \throws Error  Io: a missing parent folder, no permission, ...
     explicit AtomicFile(std::string const& path);
 
-    /// Removes the temporary unless it was committed.
+    /// Unless committed, removes the temporary, and the folder if this run has made it and it is empty now.
     ~AtomicFile();
     AtomicFile(AtomicFile const&) = delete;
     AtomicFile& operator=(AtomicFile const&) = delete;
