@@ -194,6 +194,7 @@ std::vector<int> GaussBonnetAuditor::FindEulerCharacteristics() const {
 /// Why a component cannot be audited, by its topology and tags; empty if it can.
 std::string GaussBonnetAuditor::FindReason(int component) const {
     Level const& level = _input.level;
+    if (_input.scene.cage.scheme == Sdc::SCHEME_BILINEAR) return "a bilinear surface has a crease along every edge";
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         if (_component[face] != component) continue;
         if (level.IsFaceHole(face)) return "it has a hole";

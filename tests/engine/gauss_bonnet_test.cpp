@@ -220,6 +220,8 @@ TEST(GaussBonnet, OpenAndCreasedComponentsAreListedWithTheReason) {
     EXPECT_TRUE(AuditOf(lantern, 7 * 32).wasAudited);
     lantern.cage.holes = {3};
     EXPECT_EQ(AuditOf(lantern, 70).reason, "it has a hole");
+    lantern.cage.scheme = Sdc::SCHEME_BILINEAR;
+    EXPECT_EQ(AuditOf(lantern, 70).reason, "a bilinear surface has a crease along every edge");
 }
 
 }  // namespace
