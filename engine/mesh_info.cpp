@@ -330,9 +330,7 @@ MeshInfo DescribeMesh(Scene const& scene, Level const& level) {
     info.creases = scene.cage.creaseSharpness.size();
     info.corners = scene.cage.cornerSharpness.size();
     info.holes = scene.cage.holes.size();
-    for (FaceGroups const& groups : scene.groups) {
-        info.groups.insert(info.groups.end(), groups.names.begin(), groups.names.end());
-    }
+    info.groups = ListGroups(scene);
     info.defects = FindDefects(scene, level);
 
     ParitySets components(level.GetNumVertices());

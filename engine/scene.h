@@ -21,6 +21,7 @@ enum class GroupKind { Material, Group, Object };  // usemtl, g, o
 
 /// One kind of face group; `faceGroup` is empty where the file has none of that kind.
 struct FaceGroups {
+    /// As they stand in the file. What follows a `g` may be several names: such a face is in each of these groups.
     std::vector<std::string> names;
     std::vector<Index> faceGroup;  ///< per face: index into names, or -1
 };
@@ -48,6 +49,9 @@ struct Scene {
     /// "face 12 (line 345)", or "face 12" where the file has no lines.
     std::string NameFace(Index face) const;
 };
+
+/// The names that SelectGroups takes, each once.
+std::vector<std::string> ListGroups(Scene const& scene);
 
 /// The faces of the named groups (any kind), or an error that lists what there is.
 ///

@@ -11,18 +11,14 @@ namespace limn::eval {
 
 namespace {
 
-struct Derivatives {
-    Eigen::Vector3d position, ds, dt, dss, dst, dtt;
-};
-
 std::array<double, 6> EvaluatePolynomial(FaceTree const& tree, PatchPoint const& at, int channel) {
     double const* const c = at.coefficients + channel * tree.GetNumCoefficients();
     return tree.GetNumCoefficients() == kQuadCoefficients ? EvaluateQuadPolynomial(c, at.x, at.y)
                                                           : EvaluateTrianglePolynomial(c, at.x, at.y);
 }
 
-Derivatives Evaluate(FaceTree const& tree, PatchPoint const& at) {
-    Derivatives d;
+SurfaceDerivatives Evaluate(FaceTree const& tree, PatchPoint const& at) {
+    SurfaceDerivatives d;
     for (int c = 0; c < 3; ++c) {
         auto const v = EvaluatePolynomial(tree, at, c);
         double const one = at.scale, two = one * one;
@@ -37,12 +33,16 @@ Derivatives Evaluate(FaceTree const& tree, PatchPoint const& at) {
 }
 
 /// Rounding leaves about 1e-15 of each product; below 1e-12 the cross product says nothing.
-bool HasTangentPlane(Derivatives const& d) {
+bool HasTangentPlane(SurfaceDerivatives const& d) {
     double const ss = d.ds.squaredNorm(), tt = d.dt.squaredNorm();
     return d.ds.cross(d.dt).squaredNorm() > 1e-24 * ss * tt && ss > 0.0 && tt > 0.0;
 }
 
 }  // namespace
+
+SurfaceDerivatives EvaluateDerivatives(FaceTree& tree, int domain, double s, double t) {
+    return Evaluate(tree, tree.Locate(domain, s, t, FaceTree::kLimitDepth));
+}
 
 Curvature ComputeCurvature(Eigen::Vector3d const& ds, Eigen::Vector3d const& dt,
                            Eigen::Vector3d const& dss, Eigen::Vector3d const& dst,
@@ -74,13 +74,13 @@ Curvature ComputeCurvature(Eigen::Vector3d const& ds, Eigen::Vector3d const& dt,
 }
 
 SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t, double orientation) {
-    Derivatives const here = Evaluate(tree, tree.Locate(domain, s, t, FaceTree::kLimitDepth));
+    SurfaceDerivatives const here = EvaluateDerivatives(tree, domain, s, t);
     SurfaceSample sample;
     sample.position = here.position;
     sample.tangentS = here.ds;
     sample.tangentT = here.dt;
 
-    Derivatives shape = here;
+    SurfaceDerivatives shape = here;
     // No tangent plane: towards the domain's centre, first by 2^-10 of the way, then all of it.
     double const centre = tree.GetCentre();
     double stepped = 0x1p-10, placeS = s, placeT = t;
@@ -88,7 +88,7 @@ SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t, dou
         sample.isDegenerate = true;
         placeS = s + stepped * (centre - s);
         placeT = t + stepped * (centre - t);
-        shape = Evaluate(tree, tree.Locate(domain, placeS, placeT, FaceTree::kLimitDepth));
+        shape = EvaluateDerivatives(tree, domain, placeS, placeT);
         stepped *= 32.0;
     }
     if (!HasTangentPlane(shape)) {  // the face has collapsed to a line or a point
@@ -100,8 +100,8 @@ SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t, dou
 
     PatchPoint const apart = tree.Locate(domain, placeS, placeT, FaceTree::kCurvatureDepth);
     sample.isMoved = apart.isMoved;
-    Derivatives const second = Evaluate(tree, apart);
-    Derivatives const& use = HasTangentPlane(second) ? second : shape;
+    SurfaceDerivatives const second = Evaluate(tree, apart);
+    SurfaceDerivatives const& use = HasTangentPlane(second) ? second : shape;
     sample.curvature = ComputeCurvature(use.ds, use.dt, use.dss, use.dst, use.dtt, orientation);
     return sample;
 }

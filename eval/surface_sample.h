@@ -23,6 +23,15 @@ struct SurfaceSample {
     bool isDegenerate = false;  ///< no tangent plane here: normal and curvature from nearby
 };
 
+/// Position and its derivatives by a domain's s and t.
+struct SurfaceDerivatives {
+    Eigen::Vector3d position, ds, dt, dss, dst, dtt;
+};
+
+/// Evaluates the tree's first three channels as they are: nothing is moved away from an irregular corner
+/// but what is nearer to it than doubles can tell.
+SurfaceDerivatives EvaluateDerivatives(FaceTree& tree, int domain, double s, double t);
+
 /// Curvature from derivatives; the unit normal is ds x dt.
 ///
 /// \pre ds and dt are not parallel

@@ -121,8 +121,8 @@ nlohmann::json ToJson(engine::AuditReport const& audit, engine::BakeReport const
         if (seam.max >= worst.max) worst = seam;
     }
     for (auto const& c : audit.gaussBonnet) {
-        components.push_back({{"component", c.component}, {"integral", c.integral}, {"expected", c.expected},
-                              {"relative_error", c.relativeError}, {"audited", c.wasAudited}, {"reason", c.reason}});
+        components.push_back({{"component", c.component}, {"integral", c.integral}, {"texel_sum", c.texelSum},
+                              {"expected", c.expected}, {"relative_error", c.relativeError}, {"audited", c.wasAudited}, {"reason", c.reason}});
     }
     return {{"seam_max", worst.max},
             {"seam_p99", worst.p99},

@@ -1,6 +1,8 @@
 #include "engine/io/file.h"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -37,6 +39,13 @@ struct Descriptor {
 };
 
 }  // namespace
+
+std::string GetEnding(std::string const& path) {
+    std::string ending = fs::path(path).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return ending;
+}
 
 InputFile::InputFile(std::string const& path) {
     Descriptor const file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
@@ -133,17 +142,30 @@ fs::path FolderOf(std::string const& path) {
     return folder.empty() ? fs::path(".") : folder;
 }
 
+/// Folders that this run has made for its files. Whoever adds or removes a file in one holds the mutex.
+std::mutex madeFoldersMutex;
+std::set<std::string> madeFolders;
+
 /// Creates the last folder of a path; its parent has to exist.
 void PrepareFolder(std::string const& path) {
     fs::path const folder = FolderOf(path);
     std::error_code ignored;
     if (fs::is_directory(folder, ignored)) return;
-    if (::mkdir(folder.c_str(), 0777) == 0 || errno == EEXIST) return;
+    if (::mkdir(folder.c_str(), 0777) == 0) {
+        madeFolders.insert(folder.string());
+        return;
+    }
+    if (errno == EEXIST) return;
     if (errno == ENOENT) {
         throw Error(ErrorCode::Io, fmt::format("'{}' cannot be written: the folder '{}' does not exist",
                                                path, folder.parent_path().string()));
     }
     ThrowIoError(path, "cannot be written");
+}
+
+/// Removes a folder that this run has made if it is empty; one with files in it stays.
+void RemoveIfMadeAndEmpty(fs::path const& folder) {
+    if (madeFolders.contains(folder.string()) && ::rmdir(folder.c_str()) == 0) madeFolders.erase(folder.string());
 }
 
 /// Removes `.NAME.HOST.PID.tmp` files whose process on this host has ended.
@@ -174,6 +196,7 @@ void SweepStaleTemporaries(fs::path const& folder, std::string const& host) {
 }  // namespace
 
 AtomicFile::AtomicFile(std::string const& path) : _path(path) {
+    std::lock_guard const lock(madeFoldersMutex);
     PrepareFolder(path);
     fs::path const folder = FolderOf(path);
     std::string const host = HostName();
@@ -182,11 +205,19 @@ AtomicFile::AtomicFile(std::string const& path) : _path(path) {
                                          ::getpid());
     _temporary = (folder / name).string();
     Descriptor const file{::open(_temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)};
-    if (file.fd < 0) ThrowIoError(path, "cannot be written");
+    if (file.fd < 0) {
+        int const reason = errno;
+        RemoveIfMadeAndEmpty(folder);
+        errno = reason;
+        ThrowIoError(path, "cannot be written");
+    }
 }
 
 AtomicFile::~AtomicFile() {
-    if (!_isCommitted) ::unlink(_temporary.c_str());
+    if (_isCommitted) return;
+    std::lock_guard const lock(madeFoldersMutex);
+    ::unlink(_temporary.c_str());
+    RemoveIfMadeAndEmpty(FolderOf(_path));
 }
 
 void AtomicFile::Commit() {

@@ -23,6 +23,9 @@ private:
     size_t _size = 0;
 };
 
+/// A file's ending in small letters, with its dot: ".obj" of "Head.OBJ"; empty without one.
+std::string GetEnding(std::string const& path);
+
 /// SHA-256 of bytes, as 64 hexadecimal digits.
 std::string Sha256(std::string_view bytes);
 
@@ -38,7 +41,7 @@ public:
     /// \throws Error  Io: a missing parent folder, no permission, ...
     explicit AtomicFile(std::string const& path);
 
-    /// Removes the temporary unless it was committed.
+    /// Unless committed, removes the temporary, and the folder if this run has made it and it is empty now.
     ~AtomicFile();
     AtomicFile(AtomicFile const&) = delete;
     AtomicFile& operator=(AtomicFile const&) = delete;

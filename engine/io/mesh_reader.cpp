@@ -1,7 +1,5 @@
 #include "engine/io/mesh_reader.h"
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -13,17 +11,6 @@
 #include "far_ext/error.h"
 
 namespace limn::engine {
-
-namespace {
-
-std::string GetEnding(std::string const& path) {
-    std::string ending = std::filesystem::path(path).extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return ending;
-}
-
-}  // namespace
 
 Scene ReadMesh(std::string const& path) {
     InputFile const file(path);

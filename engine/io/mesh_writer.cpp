@@ -170,10 +170,11 @@ void WriteMesh(std::string const& path, Scene const& scene, bool isDouble, std::
         throw Error(ErrorCode::BadMesh, fmt::format("'{}': a coordinate is no number or does not fit a {}", path,
                                                     isDouble ? "double" : "float; use --precision double"));
     }
-    if (path.ends_with(".obj")) {
+    std::string const ending = GetEnding(path);
+    if (ending == ".obj") {
         if (warnings && !scene.primvars.empty()) warnings->push_back(path + ": OBJ holds no primvars; they are left out");
         WriteFileAtomically(path, ObjText(scene, isDouble).Make());
-    } else if (path.ends_with(".ply")) {
+    } else if (ending == ".ply") {
         auto const& cage = scene.cage;
         if (warnings && (!cage.creaseSharpness.empty() || !cage.cornerSharpness.empty() || !cage.holes.empty())) {
             warnings->push_back(path + ": PLY holds no creases, corners or holes; they are left out");

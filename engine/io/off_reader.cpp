@@ -1,5 +1,7 @@
 #include "engine/io/off_reader.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "engine/io/text_scanner.h"
@@ -60,7 +62,19 @@ private:
                 _scene.primvars[0].values.push_back(static_cast<float>(_scan.Number("a colour")));
             }
         }
+        if (hasColours) ScaleColours(_scene.primvars[0].values);
         _scene.cage.numVertices = static_cast<Index>(count);
+    }
+
+    /// Colours run from 0 to 1 or, as whole numbers, from 0 to 255; nothing but the numbers tells which. They come
+    /// out from 0 to 1, as the bytes of a PLY do.
+    static void ScaleColours(std::vector<float>& values) {
+        bool const areBytes = std::all_of(values.begin(), values.end(), [](float value) {
+            return value >= 0.0f && value <= 255.0f && value == std::floor(value);
+        });
+        bool const areShares = std::all_of(values.begin(), values.end(), [](float value) { return value <= 1.0f; });
+        if (!areBytes || areShares) return;
+        for (float& value : values) value = static_cast<float>(value * (1.0 / 255));
     }
 
     void ReadFaces(size_t count) {

@@ -277,6 +277,15 @@ TEST_F(Cli, MissingLastFolderIsMade) {
     EXPECT_TRUE(fs::exists(folder / "new/a.exr"));
 }
 
+TEST_F(Cli, FolderMadeForABakeThatFailsGoesAgain) {
+    std::string const mesh = folder.Write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt .5 .5\nvt .5001 .5\nvt .5 .5001\nf 1/1 2/2 3/3\n");
+    ExpectError(Bake(mesh, "new/{map}.exr", {"--maps", "mean,normal", "--size", "8"}), 3);  // no texel is covered
+    EXPECT_EQ(folder.List(), (Words{"m.obj"}));
+    fs::create_directory(folder / "old");
+    ExpectError(Bake(mesh, "old/{map}.exr", {"--maps", "mean,normal", "--size", "8"}), 3);
+    EXPECT_EQ(folder.List(), (Words{"m.obj", "old"}));
+}
+
 TEST_F(Cli, MissingParentFolderIsStatus5) {
     EXPECT_TRUE(Contains(ExpectError(Bake(Shape("catmark_cube"), "no/such/a.exr"), 5), "no/such"));
     ExpectError(Limn({"refine", Shape("catmark_cube"), "-o", folder / "no/such/a.obj"}), 5);

@@ -162,6 +162,23 @@ TEST(MeshWriter, ObjKeepsEverySubdivisionRule) {
     }
 }
 
+TEST(MeshWriter, EndingsMayBeCapital) {
+    Scene const torus = test::MakeTorus(6, 4);
+    for (char const* name : {"a.OBJ", "a.Obj", "a.PLY", "a.Ply"}) {
+        Scene const back = RoundTrip(torus, name, true);
+        ExpectSameBits(back.positions, torus.positions);
+        ExpectSameCornerUVs(back, torus);
+    }
+}
+
+TEST(MeshWriter, ObjKeepsSeveralNamesOfAGroup) {
+    Scene scene = test::MakeCube();
+    scene.groups[1] = {{"left arm", "arm"}, {0, 0, 1, -1, 0, 1}};
+    Scene const back = RoundTrip(scene, "a.obj", false);
+    EXPECT_EQ(engine::SelectGroups(back, {"arm"}), (std::vector<char>{1, 1, 1, 0, 1, 1}));
+    EXPECT_EQ(engine::SelectGroups(back, {"left"}), (std::vector<char>{1, 1, 0, 0, 1, 0}));
+}
+
 TEST(MeshWriter, ObjKeepsGroups) {
     Scene scene = test::MakeCube();
     scene.groups[0] = {{"red", "dark blue"}, {0, 0, 1, -1, 0, 1}};

@@ -160,6 +160,16 @@ TEST(ObjReader, SelectsTheFacesOfNamedGroups) {
     EXPECT_EQ(engine::SelectGroups(scene, {"left"}), (std::vector<char>{0, 1, 1}));
 }
 
+// `g` takes several names; materials and objects have one, which may hold blanks.
+TEST(ObjReader, AFaceIsInEachOfTheGroupsNamedAfterG) {
+    Scene const scene = Parse(kQuadVertices + "g left arm\nf 1 2 3\ng left\nf 1 2 4\ng arm\tright\nusemtl dark blue\nf 1 3 4\n");
+    EXPECT_EQ(engine::SelectGroups(scene, {"left"}), (std::vector<char>{1, 1, 0}));
+    EXPECT_EQ(engine::SelectGroups(scene, {"arm"}), (std::vector<char>{1, 0, 1}));
+    EXPECT_EQ(engine::SelectGroups(scene, {"right", "dark blue"}), (std::vector<char>{0, 0, 1}));
+    EXPECT_EQ(engine::ListGroups(scene), (std::vector<std::string>{"dark blue", "left", "arm", "right"}));
+    EXPECT_FALSE(test::RefusalOf([&] { engine::SelectGroups(scene, {"left arm"}); }).empty());
+}
+
 TEST(ObjReader, UnknownGroupIsRefusedWithTheNamesThereAre) {
     Scene const scene = Parse(kQuadVertices + "usemtl red\nf 1 2 3\ng left\nf 1 2 4\n");
     EXPECT_EQ(test::RefusalOf([&] { engine::SelectGroups(scene, {"green"}); }),

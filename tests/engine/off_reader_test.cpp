@@ -65,6 +65,24 @@ TEST(OffReader, VertexColoursOfCoffArePrimvars) {
     EXPECT_EQ(scene.primvars[0].values, (std::vector<float>{1, 0.5f, 0.25f, 1, 0, 0, 0, 1, 1, 1, 1, 0}));
 }
 
+std::vector<float> ColoursOf(std::string const& first, std::string const& second) {
+    return Parse("COFF\n3 1 0\n0 0 0 " + first + "\n1 0 0 " + second + "\n0 1 0 0 0 0 0\n3 0 1 2\n").primvars.at(0).values;
+}
+
+// Bytes of a PLY become the same numbers: value * (1.0 / 255), rounded to float.
+TEST(OffReader, WholeVertexColoursUpTo255BecomeSharesOf255) {
+    auto const share = [](int byte) { return static_cast<float>(byte * (1.0 / 255)); };
+    EXPECT_EQ(ColoursOf("255 128 0 255", "1 2 3 254"),
+              (std::vector<float>{1, share(128), 0, 1, share(1), share(2), share(3), share(254), 0, 0, 0, 0}));
+}
+
+TEST(OffReader, OtherVertexColoursStayAsTheyAre) {
+    EXPECT_EQ(ColoursOf("1 0 0 1", "0 0 1 1"), (std::vector<float>{1, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0}));        // 0 to 1
+    EXPECT_EQ(ColoursOf("2 0.5 0 1", "0 0 1 1"), (std::vector<float>{2, 0.5f, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0}));   // brighter than white
+    EXPECT_EQ(ColoursOf("256 0 0 1", "0 0 1 1"), (std::vector<float>{256, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0}));    // no bytes
+    EXPECT_EQ(ColoursOf("-1 0 0 1", "0 0 2 1"), (std::vector<float>{-1, 0, 0, 1, 0, 0, 2, 1, 0, 0, 0, 0}));
+}
+
 TEST(OffReader, NumbersDoNotDependOnTheLocale) {
     struct Comma : std::numpunct<char> {
         char do_decimal_point() const override { return ','; }
@@ -148,7 +166,9 @@ TEST(MeshReader, ChoosesByEndingAndThenByFirstBytes) {
     for (std::string const name : {"a.off", "a.OFF", "a.mesh"}) {
         EXPECT_EQ(engine::ReadMesh(folder.Write(name, kQuad)).cage.numVertices, 4) << name;
     }
-    EXPECT_THROW(engine::ReadMesh(folder.Write("a.obj", kQuad)), Error);
+    for (std::string const name : {"a.obj", "a.OBJ", "a.PLY"}) {
+        EXPECT_THROW(engine::ReadMesh(folder.Write(name, kQuad)), Error) << name;
+    }
 }
 
 TEST(MeshReader, KnowsNameAndChecksumOfTheFile) {
