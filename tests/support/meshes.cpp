@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <limits>
 #include <map>
 
 #include "engine/io/mesh_reader.h"
@@ -15,6 +17,20 @@ std::string DataPath(std::string const& path) { return std::string(LIMN_TEST_DAT
 std::string AssetPath(std::string const& path) { return std::string(LIMN_ASSETS) + "/" + path; }
 
 engine::Scene LoadData(std::string const& path) { return engine::ReadMesh(DataPath(path)); }
+
+Eigen::MatrixXd LoadGoldenPoints(std::string const& path) {
+    std::ifstream file(DataPath(path));
+    std::vector<double> values;
+    for (std::string word; file >> word;) {
+        if (word != "v") {
+            file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+            continue;
+        }
+        for (int c = 0; c < 3; ++c) file >> values.emplace_back();
+    }
+    return Eigen::Map<Eigen::Matrix<double, -1, 3, Eigen::RowMajor> const>(values.data(), static_cast<Eigen::Index>(values.size() / 3), 3);
+}
+
 bool HasAsset(std::string const& path) { return fs::exists(AssetPath(path)); }
 engine::Scene LoadAsset(std::string const& path) { return engine::ReadMesh(AssetPath(path)); }
 

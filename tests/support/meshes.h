@@ -3,12 +3,17 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "engine/scene.h"
 
 namespace limn::test {
 
 /// A mesh file of tests/data, by its path there.
 engine::Scene LoadData(std::string const& path);
+
+/// The points of a golden result, whose files have no faces.
+Eigen::MatrixXd LoadGoldenPoints(std::string const& path);
 
 /// A mesh file of the larger assets; the caller skips its test where HasAsset is false.
 bool HasAsset(std::string const& path);
