@@ -1,0 +1,194 @@
+#include "eval/interpolate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "far_ext/error.h"
+
+namespace limn::eval {
+
+namespace {
+
+/// Where neither valences nor the caller give a bound. Valence-3 vertices among others hardly go below it, and
+/// Chebyshev lowers it where they do.
+constexpr double kUsualLambda = 0.08;
+
+/// Below this conjugate gradients, which adapt to a few small eigenvalues, are faster than Chebyshev.
+constexpr double kSmallLambda = 0.03;
+
+/// Up to so many unknowns a factorisation is tried where nothing else converges: 10 s, 0.3 GB.
+constexpr Index kMaxFactorised = 200000;
+
+void Validate(LimitOperator const& A, std::span<double const> M, int length, std::span<double> P, InterpolateOptions const& options) {
+    size_t const count = static_cast<size_t>(A.GetNumVertices()) * static_cast<size_t>(std::max(length, 0));
+    if (length < 1 || M.size() != count || P.size() != count) {
+        throw Error(ErrorCode::BadOption, "interpolation: data and solution need `length` numbers per vertex");
+    }
+    if (!(options.tolerance > 0.0)) throw Error(ErrorCode::BadOption, "interpolation: the tolerance must be above 0");
+    if (options.maxIterations < 1) throw Error(ErrorCode::BadOption, "interpolation: at least one iteration is needed");
+    auto const bad = std::find_if(M.begin(), M.end(), [](double x) { return !std::isfinite(x); });
+    if (bad == M.end()) return;
+    throw Error(ErrorCode::BadMesh, "vertex " + std::to_string((bad - M.begin()) / length) +
+                                        " has a value that is not a finite number; nothing can be fitted to it");
+}
+
+/// Numbers without pattern, the same everywhere.
+std::vector<double> MakeNoise(size_t count) {
+    std::vector<double> noise(count);
+    uint64_t state = 0x9e3779b97f4a7c15u;
+    for (double& value : noise) {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        value = static_cast<double>(state >> 11) * 0x1p-52 - 1.0;
+    }
+    return noise;
+}
+
+void Join(SolveReport& report, SolveReport const& block) {
+    bool const isWorst = report.method == SolveMethod::Automatic || block.residual > report.residual;
+    if (isWorst) {
+        report.method = block.method;
+        report.residual = block.residual;
+        report.worstVertex = block.worstVertex;
+        report.history = block.history;
+    }
+    report.iterations = std::max(report.iterations, block.iterations);
+    report.converged &= block.converged;
+    if (report.lambdaMin == 0.0 || (block.lambdaMin > 0.0 && block.lambdaMin < report.lambdaMin)) report.lambdaMin = block.lambdaMin;
+    for (size_t i = 0; i < block.singularComponents.size(); ++i) {
+        if (report.singularComponents.size() <= i) report.singularComponents.push_back(block.singularComponents[i]);
+        auto& known = report.singularComponents[i];
+        known.defect = std::max(known.defect, block.singularComponents[i].defect);
+        known.isSolved &= block.singularComponents[i].isSolved;
+    }
+}
+
+}  // namespace
+
+char const* GetName(SolveMethod method) {
+    constexpr char const* kNames[] = {"auto", "progressive", "weighted", "chebyshev", "cg", "direct"};
+    return kNames[static_cast<int>(method)];
+}
+
+double FindSize(std::span<double const> values, int length) {
+    double square = 0.0;
+    for (int c = 0; c < length; ++c) {
+        double low = INFINITY, high = -INFINITY;
+        for (size_t i = static_cast<size_t>(c); i < values.size(); i += static_cast<size_t>(length)) {
+            low = std::min(low, values[i]);
+            high = std::max(high, values[i]);
+        }
+        if (high > low) square += (high - low) * (high - low);
+    }
+    return square > 0.0 ? std::sqrt(square) : 1.0;
+}
+
+Interpolator::Interpolator(Far::TopologyRefiner const& refiner, int level, far_ext::LimitOptions const& options)
+    : _A(LimitOperator::Build(refiner, level, options)), _singular(_A) {}
+
+SolveReport Interpolator::Solve(std::span<double const> M, int length, std::span<double> P, InterpolateOptions const& options) const {
+    Validate(_A, M, length, P, options);
+    SolveReport report;
+    report.converged = true;
+    constexpr int kMaxBlock = 4;
+    if (length <= kMaxBlock) {
+        std::copy(M.begin(), M.end(), P.begin());
+        LimitProblem problem{_A, length, M.data(), P.data(), FindSize(M, length), options.tolerance, options.maxIterations, options.onIteration};
+        Join(report, SolveBlock(problem, options));
+        return report;
+    }
+    size_t const numVertices = static_cast<size_t>(_A.GetNumVertices()), stride = static_cast<size_t>(length);
+    double const size = FindSize(M, length);
+    for (int first = 0; first < length; first += kMaxBlock) {
+        size_t const start = static_cast<size_t>(first), block = static_cast<size_t>(std::min(kMaxBlock, length - first));
+        std::vector<double> data(numVertices * block), solution;
+        for (size_t i = 0; i < numVertices; ++i) std::copy_n(&M[i * stride + start], block, &data[i * block]);
+        solution = data;
+        LimitProblem problem{_A, static_cast<int>(block), data.data(), solution.data(), size, options.tolerance, options.maxIterations, options.onIteration};
+        Join(report, SolveBlock(problem, options));
+        for (size_t i = 0; i < numVertices; ++i) std::copy_n(&solution[i * block], block, &P[i * stride + start]);
+    }
+    return report;
+}
+
+/// Chooses and runs methods; `used` receives the last one.
+IterationResult Interpolator::Run(LimitProblem const& problem, InterpolateOptions const& options, SolveMethod& used) const {
+    bool const isAutomatic = options.method == SolveMethod::Automatic;
+    double lambda = options.lambdaMin > 0.0 ? options.lambdaMin : _A.GetEigenvalueBound();
+    if (!(lambda > 1e-3)) lambda = kUsualLambda;
+    lambda = std::min(lambda, 0.9);
+    std::vector<Index> pinned;
+    for (auto const& component : _singular.Get()) pinned.push_back(component.vertices.front());
+    used = isAutomatic ? SolveMethod::Chebyshev : options.method;
+    switch (used) {
+        case SolveMethod::Progressive: return RunStationary(problem, StationaryMethod::Progressive, lambda);
+        case SolveMethod::Weighted: return RunStationary(problem, StationaryMethod::Weighted, lambda);
+        case SolveMethod::ConjugateGradients: return RunConjugateGradients(problem);
+        case SolveMethod::Direct: return SolveDirectly(problem, pinned);
+        default: break;
+    }
+    IterationResult result = RunStationary(problem, StationaryMethod::Chebyshev, lambda, isAutomatic ? kSmallLambda : 1e-6);
+    auto const goOn = [&](SolveMethod method, auto const& run) {
+        used = method;
+        // What diverged is no start.
+        if (!(result.residual < 1.0)) std::copy_n(problem.data, static_cast<size_t>(_A.GetNumVertices()) * problem.length, problem.solution);
+        if (!(result.residual < 1.0)) SolveCurves(problem);
+        IterationResult next = run();
+        result.history.insert(result.history.end(), next.history.begin(), next.history.end());
+        next.history = std::move(result.history);
+        next.applications += result.applications;
+        result = std::move(next);
+    };
+    if (isAutomatic && result.isStuck && result.applications < problem.maxApplications) {
+        LimitProblem rest = problem;
+        rest.maxApplications -= result.applications;
+        goOn(SolveMethod::ConjugateGradients, [&] { return RunConjugateGradients(rest); });
+    }
+    bool const isSmallEnough = _A.GetNumRows(LimitOperator::Stage::Rest) <= kMaxFactorised;
+    if (isAutomatic && !result.converged && isSmallEnough) goOn(SolveMethod::Direct, [&] { return SolveDirectly(problem, pinned); });
+    return result;
+}
+
+SolveReport Interpolator::SolveBlock(LimitProblem& problem, InterpolateOptions const& options) const {
+    SolveReport report;
+    std::vector<double> projected;
+    double const* const data = problem.data;
+    double worstDefect = 0.0;
+    for (auto const& component : _singular.Get()) {
+        double const defect = SingularComponents::FindDefect(component, data, problem.length) / problem.size;
+        report.singularComponents.push_back({component.vertices.front(), static_cast<Index>(component.vertices.size()), defect,
+                                             defect <= 0.5 * problem.tolerance});
+        worstDefect = std::max(worstDefect, defect);
+    }
+    if (!_singular.Get().empty()) {
+        projected.assign(data, data + static_cast<size_t>(_A.GetNumVertices()) * problem.length);
+        _singular.Project(projected.data(), problem.length);
+        std::copy(projected.begin(), projected.end(), problem.solution);
+        problem.data = projected.data();
+        // What cannot be reached comes on top.
+        if (worstDefect <= 0.5 * problem.tolerance) problem.tolerance -= worstDefect;
+    }
+    SolveCurves(problem);
+    report.method = options.method == SolveMethod::Automatic ? SolveMethod::Chebyshev : options.method;
+    IterationResult result;
+    if (_A.GetNumRows(LimitOperator::Stage::Rest) > 0) result = Run(problem, options, report.method);
+    _singular.Project(problem.solution, problem.length);
+
+    problem.data = data;
+    report.iterations = result.applications;
+    report.history = std::move(result.history);
+    report.lambdaMin = result.lambdaMin;
+    report.residual = FindResidual(problem, &report.worstVertex);
+    report.converged = report.residual <= options.tolerance;
+    return report;
+}
+
+double Interpolator::EstimateSmallestEigenvalue(int steps) const {
+    if (_A.GetNumRows(LimitOperator::Stage::Rest) == 0) return 1.0;
+    size_t const count = static_cast<size_t>(_A.GetNumVertices());
+    std::vector<double> const noise = MakeNoise(count);
+    std::vector<double> solution(count, 0.0);
+    LimitProblem const problem{_A, 1, noise.data(), solution.data(), 1.0, 1e-14, steps + 1, {}};
+    return RunConjugateGradients(problem).lambdaMin;
+}
+
+}  // namespace limn::eval

@@ -1,0 +1,129 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "eval/chunks.h"
+#include "far_ext/limit_row.h"
+
+namespace limn::eval {
+
+/// The limit matrix A without its weights: rows of alike vertices share one set of them, so that a row is the
+/// list of its neighbours and a class number (38 bytes for a vertex among quads). Only rows whose weights are
+/// unlike each other (mixed faces, semi-sharp creases) carry their own.
+///
+/// Order    A is block triangular: fixed vertices first, then curves that end at those (or close), which need
+///          nothing else, then the rest. Solvers take the stages one after the other.
+/// Threads  immutable; its methods use the pool, with the same bits for any number of threads.
+/// Source   [LaiCheng11] Sec. 3 and 4; surface.md 1.1, 1.2.
+class LimitOperator {
+public:
+    enum class Stage : unsigned char { Fixed, Curve, Rest };
+
+    /// What rows have in common.
+    struct RowClass {
+        double centre = 1.0, edge = 0.0, other = 0.0;  ///< weights; unused where isExplicit
+        double scale = 1.0;                            ///< of D, see far_ext::LimitRow
+        int numEdges = 0;
+        Stage stage = Stage::Fixed;
+        far_ext::LimitRow::Kind kind = far_ext::LimitRow::Kind::Fixed;
+        bool isExplicit = false;
+        bool isEvenCubic = false;
+        bool operator==(RowClass const&) const = default;
+    };
+
+    /// Builds the operator in linear time, straight from the topology.
+    ///
+    /// \throws Error  as far_ext::LimitRowBuilder; TooLarge: 2^31 neighbours, or 65536 classes
+    static LimitOperator Build(Far::TopologyRefiner const& refiner, int level = 0, far_ext::LimitOptions const& options = {});
+
+    Index GetNumVertices() const { return static_cast<Index>(_classes.size()); }
+    Index GetNumRows(Stage stage) const { return _numRows[static_cast<int>(stage)]; }
+    RowClass const& GetClass(Index row) const { return _table[_classes[row]]; }
+
+    /// All neighbours of a row, edge neighbours first; one may come twice.
+    std::span<Index const> GetNeighbours(Index row) const;
+
+    /// A lower bound of the rest's eigenvalues that follows from valences alone; 0 where they say nothing.
+    double GetEigenvalueBound() const { return _eigenvalueBound; }
+
+    /// True if D A is symmetric among the rest: no darts, semi-sharp or non-manifold vertices, no open creases.
+    bool IsSymmetric() const { return _isSymmetric; }
+
+    /// Bytes of all its arrays.
+    size_t GetNumBytes() const;
+
+    /// y = A x, for rows of `length` doubles. \pre x and y do not overlap
+    void Apply(std::span<double const> x, int length, std::span<double> y) const;
+
+    /// Calls visit(row, class, y) with y = (A x)[row], Length doubles, for the rows of a range whose stage is
+    /// `first` or later.
+    template <int Length, class Visit>
+    void ForEachRow(Index begin, Index end, Stage first, double const* x, Visit visit) const;
+
+    /// Calls visit(column, weight) for the entries of a row, the diagonal first; a column may come twice.
+    template <class Visit>
+    void ForEachEntry(Index row, Visit visit) const;
+
+private:
+    void Append(far_ext::LimitRow const& row);
+    unsigned short FindClass(RowClass const& wanted);
+    void FindStages();
+    void Summarise(Sdc::SchemeType scheme, far_ext::LimitOptions const& options);
+
+    std::vector<int> _starts{0};  // into _indices, with the end of the last row
+    std::vector<unsigned short> _classes;
+    std::vector<Index> _indices;  // an explicit row's first one is the place of its weights
+    std::vector<double> _weights;  // of explicit rows: centre, then one per neighbour
+    std::vector<RowClass> _table;
+    Index _numRows[3] = {0, 0, 0};
+    double _eigenvalueBound = 1.0;
+    bool _isSymmetric = true;
+};
+
+template <int Length, class Visit>
+void LimitOperator::ForEachRow(Index begin, Index end, Stage first, double const* x, Visit visit) const {
+    auto const at = [&](Index vertex) { return x + static_cast<size_t>(vertex) * Length; };
+    for (Index row = begin; row < end; ++row) {
+        RowClass const& c = GetClass(row);
+        if (c.stage < first) continue;
+        int k = _starts[row];
+        int const stop = _starts[row + 1];
+        double const* const own = at(row);
+        double y[Length], edges[Length] = {}, others[Length] = {};
+        if (c.isExplicit) {
+            double const* weight = &_weights[static_cast<size_t>(_indices[k])];
+            for (int i = 0; i < Length; ++i) y[i] = *weight * own[i];
+            for (++k; k < stop; ++k) {
+                ++weight;
+                double const* const point = at(_indices[k]);
+                for (int i = 0; i < Length; ++i) y[i] += *weight * point[i];
+            }
+        } else {
+            for (int const middle = k + c.numEdges; k < middle; ++k) {
+                double const* const point = at(_indices[k]);
+                for (int i = 0; i < Length; ++i) edges[i] += point[i];
+            }
+            for (; k < stop; ++k) {
+                double const* const point = at(_indices[k]);
+                for (int i = 0; i < Length; ++i) others[i] += point[i];
+            }
+            for (int i = 0; i < Length; ++i) y[i] = c.centre * own[i] + c.edge * edges[i] + c.other * others[i];
+        }
+        visit(row, c, y);
+    }
+}
+
+template <class Visit>
+void LimitOperator::ForEachEntry(Index row, Visit visit) const {
+    RowClass const& c = GetClass(row);
+    double const* const own = c.isExplicit ? &_weights[static_cast<size_t>(_indices[_starts[row]])] : nullptr;
+    visit(row, own ? own[0] : c.centre);
+    auto const neighbours = GetNeighbours(row);
+    for (size_t k = 0; k < neighbours.size(); ++k) {
+        double const shared = static_cast<int>(k) < c.numEdges ? c.edge : c.other;
+        visit(neighbours[k], own ? own[k + 1] : shared);
+    }
+}
+
+}  // namespace limn::eval

@@ -1,0 +1,182 @@
+#include "support/fit_meshes.h"
+
+#include <cmath>
+#include <random>
+
+#include "engine/refine.h"
+#include "far_ext/refiner.h"
+#include "support/meshes.h"
+
+namespace limn::test {
+
+namespace {
+
+/// Triangles with what lies across each edge, for flipping.
+class TriangleFlipper {
+public:
+    explicit TriangleFlipper(engine::Scene& scene) : _v(scene.cage.faceVertices), _valence(static_cast<size_t>(scene.cage.numVertices), 0) {
+        auto const refiner = far_ext::CreateRefiner(scene.cage);
+        auto const level = refiner->GetLevel(0);
+        _across.assign(_v.size(), -1);
+        for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+            auto const faces = level.GetEdgeFaces(edge);
+            auto const places = level.GetEdgeFaceLocalIndices(edge);
+            _across[static_cast<size_t>(3 * faces[0] + places[0])] = 3 * faces[1] + places[1];
+            _across[static_cast<size_t>(3 * faces[1] + places[1])] = 3 * faces[0] + places[0];
+        }
+        for (Index vertex : _v) ++_valence[static_cast<size_t>(vertex)];
+    }
+
+    int GetNumEdges() const { return static_cast<int>(_v.size()); }
+
+    void Flip(int e) {
+        int const other = At(_across, e), f = e / 3 * 3, g = other / 3 * 3;
+        Index const a = At(_v, e), b = At(_v, Next(e)), c = At(_v, Next(Next(e))), d = At(_v, Next(Next(other)));
+        if (At(_valence, a) <= 3 || At(_valence, b) <= 3 || c == d || AreJoined(Next(Next(e)), d)) return;
+        int const bc = At(_across, Next(e)), ca = At(_across, Next(Next(e))), ad = At(_across, Next(other)), db = At(_across, Next(Next(other)));
+        Set(f, {c, a, d});
+        Set(g, {d, b, c});
+        Meet(f, ca);
+        Meet(f + 1, ad);
+        Meet(f + 2, g + 2);
+        Meet(g, db);
+        Meet(g + 1, bc);
+        --At(_valence, a);
+        --At(_valence, b);
+        ++At(_valence, c);
+        ++At(_valence, d);
+    }
+
+private:
+    template <class T>
+    static T& At(std::vector<T>& values, int i) { return values[static_cast<size_t>(i)]; }
+    static int Next(int e) { return e % 3 == 2 ? e - 2 : e + 1; }
+
+    void Set(int first, std::array<Index, 3> const& corners) { std::copy(corners.begin(), corners.end(), _v.begin() + first); }
+    void Meet(int e, int other) {
+        At(_across, e) = other;
+        At(_across, other) = e;
+    }
+    /// Whether the vertex that edge `start` leaves has `d` as a neighbour.
+    bool AreJoined(int start, Index d) {
+        int e = start;
+        do {
+            if (At(_v, Next(e)) == d) return true;
+            e = Next(At(_across, e));
+        } while (e != start);
+        return false;
+    }
+
+    std::vector<Index>& _v;
+    std::vector<int> _across, _valence;
+};
+
+}  // namespace
+
+engine::Scene MakeIrregularTriangles(int n, int m, unsigned seed) {
+    engine::Scene scene = MakeTriangleTorus(n, m);
+    TriangleFlipper flipper(scene);
+    std::mt19937 random(seed);
+    for (int i = flipper.GetNumEdges() / 3; i > 0; --i) flipper.Flip(static_cast<int>(random() % static_cast<unsigned>(flipper.GetNumEdges())));
+    return scene;
+}
+
+engine::Scene Refine(engine::Scene const& scene, int levels) { return engine::RefineUniformly(scene, levels, false); }
+
+namespace {
+
+engine::Scene ToSphere(engine::Scene scene) {
+    for (size_t i = 0; i < scene.positions.size(); i += 3) {
+        double* const p = &scene.positions[i];
+        double const length = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+        for (int c = 0; c < 3; ++c) p[c] /= length;
+    }
+    return scene;
+}
+
+}  // namespace
+
+engine::Scene MakeQuadSphere(int levels) { return ToSphere(Refine(MakeCube(), levels)); }
+
+engine::Scene MakeIcosphere(int levels) {
+    engine::Scene scene = LoadData("golden_surface/icosa.obj");
+    scene.cage.scheme = Sdc::SCHEME_LOOP;
+    return ToSphere(Refine(scene, levels));
+}
+
+engine::Scene MakeBipyramid(int n) {
+    std::vector<double> positions{0, 0, 1, 0, 0, -1};
+    std::vector<std::vector<Index>> faces;
+    for (int i = 0; i < n; ++i) {
+        double const angle = 2 * std::acos(-1.0) * i / n;
+        positions.insert(positions.end(), {std::cos(angle), std::sin(angle), 0.0});
+        int const a = 2 + i, b = 2 + (i + 1) % n;
+        faces.push_back({0, a, b});
+        faces.push_back({1, b, a});
+    }
+    return MakeScene(std::move(positions), faces, Sdc::SCHEME_LOOP);
+}
+
+engine::Scene MakePrism(int n) {
+    std::vector<double> positions;
+    std::vector<std::vector<Index>> faces(2);
+    for (int i = 0; i < n; ++i) {
+        double const angle = 2 * std::acos(-1.0) * i / n;
+        for (double z : {-1.0, 1.0}) positions.insert(positions.end(), {std::cos(angle), std::sin(angle), z});
+        faces[0].insert(faces[0].begin(), 2 * i);
+        faces[1].push_back(2 * i + 1);
+        int const next = (i + 1) % n;
+        faces.push_back({2 * i, 2 * next, 2 * next + 1, 2 * i + 1});
+    }
+    return MakeScene(std::move(positions), faces);
+}
+
+engine::Scene MakeGridWithHole(int n, int m) {
+    std::vector<double> positions;
+    std::vector<std::vector<Index>> faces;
+    for (int i = 0; i <= n; ++i) {
+        for (int j = 0; j <= m; ++j) {
+            positions.insert(positions.end(), {static_cast<double>(i), static_cast<double>(j), std::sin(0.7 * i) * std::cos(0.9 * j)});
+        }
+    }
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < m; ++j) {
+            int const a = i * (m + 1) + j, b = a + m + 1;
+            if (i != n / 2 || j != m / 2) faces.push_back({a, b, b + 1, a + 1});
+        }
+    }
+    return MakeScene(std::move(positions), faces);
+}
+
+void AddNoise(engine::Scene& scene, double share, unsigned seed) {
+    auto const& cage = scene.cage;
+    double sum = 0.0;
+    size_t corner = 0;
+    auto const point = [&](Index v) { return &scene.positions[3 * static_cast<size_t>(v)]; };
+    for (int size : cage.faceSizes) {
+        for (int i = 0; i < size; ++i) {
+            double const* const a = point(cage.faceVertices[corner + static_cast<size_t>(i)]);
+            double const* const b = point(cage.faceVertices[corner + static_cast<size_t>((i + 1) % size)]);
+            sum += std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+        }
+        corner += static_cast<size_t>(size);
+    }
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal(0.0, share * sum / static_cast<double>(corner));
+    for (double& x : scene.positions) x += normal(random);
+}
+
+engine::Scene Join(std::vector<engine::Scene> const& scenes) {
+    engine::Scene all = scenes.front();
+    for (size_t i = 1; i < scenes.size(); ++i) {
+        Index const first = all.cage.numVertices;
+        auto const& cage = scenes[i].cage;
+        all.positions.insert(all.positions.end(), scenes[i].positions.begin(), scenes[i].positions.end());
+        all.cage.faceSizes.insert(all.cage.faceSizes.end(), cage.faceSizes.begin(), cage.faceSizes.end());
+        for (Index vertex : cage.faceVertices) all.cage.faceVertices.push_back(first + vertex);
+        all.cage.numVertices += cage.numVertices;
+    }
+    return all;
+}
+
+}  // namespace limn::test
