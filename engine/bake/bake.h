@@ -10,6 +10,7 @@
 #include "engine/bake/exr_writer.h"
 #include "engine/bake/maps.h"
 #include "engine/job.h"
+#include "engine/noise/surface_noise.h"
 #include "engine/scene.h"
 
 namespace limn::engine {
@@ -17,6 +18,7 @@ namespace limn::engine {
 struct BakeOptions {
     std::string pattern;           ///< output path with {map}, {mesh}, <UDIM> or {udim}
     MapOptions maps;
+    NoiseOptions noise;            ///< of the map 'noise'
     int width = 2048, height = 2048;
     std::vector<int> tiles;        ///< UDIM numbers; empty for all
     int samplesPerSide = 1;        ///< N x N per texel

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include <fmt/format.h>
@@ -25,13 +26,17 @@ struct BandBaker::Worker {
     std::vector<float> block;  // map values of a block of samples
     UninitializedVector<int> places;  // the texels they belong to
     std::vector<std::array<double, 4>> jacobians;
+    std::optional<SurfaceNoise::Sampler> noise;
+    std::vector<double> noiseValues, noiseBlock;  // of all hits, of a block of samples
     std::vector<float> samplePlanes, lineSums;
     TexelBand sampleTexels;
 
     explicit Worker(BandBaker const& baker)
         : tree(*baker._surface, baker._values),
           sampler(tree, baker._quantity, baker._options.isLeftHanded ? -1.0f : 1.0f),
-          raster(*baker._uvSurface, baker._scene.uvs) {}
+          raster(*baker._uvSurface, baker._scene.uvs) {
+        if (baker._noise) noise.emplace(*baker._noise);
+    }
 };
 
 namespace {
@@ -103,6 +108,10 @@ BandBaker::BandBaker(Scene const& scene, Far::TopologyRefiner const& refiner, Sc
         first += primvar.values.size();
     }
     if (other) _values.push_back({other->positions, 3});
+
+    bool const hasNoise =
+        std::any_of(maps.begin(), maps.end(), [](Map const& map) { return map.kind == MapKind::Noise; });
+    if (hasNoise) _noise = std::make_unique<SurfaceNoise>(scene, options.noise);
 
     _bounds.resize(_isBaked.size());
     tbb::parallel_for(tbb::blocked_range<Index>(0, GetNumFaces(), 512), [&](auto const& range) {
@@ -279,6 +288,10 @@ void BandBaker::RasterSamples(Worker& worker, TileGrid const& grid, std::vector<
 void BandBaker::EvaluateHits(Worker& worker, Index face, int domain, TexelHits const& hits, float* planes,
                              size_t planeSize) {
     _hasTexels[face].store(true, std::memory_order_relaxed);
+    if (_noise) {
+        worker.noiseValues.resize(hits.s.size());
+        worker.noise->Evaluate(face, domain, hits.s, hits.t, worker.noiseValues);
+    }
     worker.sampler.Evaluate(domain, hits.s, hits.t, [&](std::span<int const> samples, float const* values, size_t stride) {
         worker.places.resize(samples.size());
         for (size_t i = 0; i < samples.size(); ++i) worker.places[i] = hits.texel[samples[i]];
@@ -288,12 +301,17 @@ void BandBaker::EvaluateHits(Worker& worker, Index face, int domain, TexelHits c
                 worker.jacobians.push_back(worker.raster.GetJacobian(domain, hits.s[sample], hits.t[sample]));
             }
         }
+        worker.noiseBlock.clear();
+        for (int sample : samples) {
+            if (_noise) worker.noiseBlock.push_back(worker.noiseValues[sample]);
+        }
+        MapSamples const block{_quantity, values, stride, samples.size(), worker.jacobians, _meanArea, worker.noiseBlock,
+                               _noise ? _noise->GetLow() : 0.0, _noise ? _noise->GetHigh() : 0.0};
         float* plane = planes;
         for (Map const& map : _maps) {
             size_t const numChannels = static_cast<size_t>(map.GetNumChannels());
             worker.block.resize(numChannels * stride);
-            EvaluateMap(map, _options.maps, _quantity, values, stride, samples.size(), worker.jacobians, _meanArea,
-                        worker.block.data(), stride);
+            EvaluateMap(map, _options.maps, block, worker.block.data(), stride);
             for (size_t c = 0; c < numChannels; ++c, plane += planeSize) {
                 Scatter(worker.places, &worker.block[c * stride], plane);
             }

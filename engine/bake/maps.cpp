@@ -42,6 +42,7 @@ std::vector<MapRow> const& GetTable() {
         {"normal", MapKind::Normal, rgb, Averaging::UnitVector, true, "unit vector", Quantity::Normal},
         {"displacement", MapKind::Displacement, y, Averaging::Plain, true, "length", Quantity::Normal},
         {"stretch", MapKind::Stretch, y, Averaging::Plain, true, "log2", Quantity::Tangents},
+        {"noise", MapKind::Noise, y, Averaging::Plain, true, "amplitude", Quantity::Position},
     };
     return table;
 }
@@ -101,6 +102,11 @@ std::vector<Map> MakeMaps(MapOptions const& options, Scene const& scene) {
             map.extraChannel = 3 + numPrimvarChannels;
             if (options.isVector) map.channels = {"R", "G", "B"};
             if (options.isVector && options.space == MapSpace::Tangent) map.quantity = Quantity::Tangents;
+        }
+        if (map.kind == MapKind::Noise && (options.ramp || options.isNormalized)) {
+            map.isSigned = false;
+            map.units = options.ramp ? "colour" : "share of the range";
+            if (options.ramp) map.channels = {"R", "G", "B"};
         }
         maps.push_back(std::move(map));
     }
@@ -165,14 +171,15 @@ float ShapeIndex(float k1, float k2) {
     return PortableAtan2(k1 + k2, k1 - k2) * 0.63661977236758134f;
 }
 
-void EvaluateDisplacement(Map const& map, MapOptions const& options, Quantity quantity, float const* planes,
-                          size_t stride, size_t i, std::span<std::array<double, 4> const> jacobians,
-                          float* out, size_t outStride) {
+void EvaluateDisplacement(Map const& map, MapOptions const& options, MapSamples const& samples, size_t i, float* out,
+                          size_t outStride) {
+    float const* const planes = samples.planes;
+    size_t const stride = samples.stride;
     auto const vector = [&](size_t channel) {
         return Eigen::Vector3d(planes[channel * stride + i], planes[(channel + 1) * stride + i],
                                planes[(channel + 2) * stride + i]);
     };
-    size_t const other = static_cast<size_t>(eval::GetNumChannels(quantity) + map.extraChannel - 3);
+    size_t const other = static_cast<size_t>(eval::GetNumChannels(samples.quantity) + map.extraChannel - 3);
     Eigen::Vector3d const difference = vector(other) - vector(eval::kPositionX);
     Eigen::Vector3d const normal = vector(eval::kNormalX);
     if (!options.isVector) {
@@ -182,7 +189,7 @@ void EvaluateDisplacement(Map const& map, MapOptions const& options, Quantity qu
     Eigen::Vector3d result = difference;
     if (options.space == MapSpace::Tangent) {
         // dP/du = P_s s_u + P_t t_u, with d(s,t)/d(u,v) the inverse of the Jacobian.
-        auto const& [us, ut, vs, vt] = jacobians[i];
+        auto const& [us, ut, vs, vt] = samples.jacobians[i];
         double const det = us * vt - ut * vs;
         double const sign = det < 0.0 ? -1.0 : 1.0;
         Eigen::Vector3d along = sign * (vt * vector(eval::kTangentSX) - vs * vector(eval::kTangentTX));
@@ -194,25 +201,41 @@ void EvaluateDisplacement(Map const& map, MapOptions const& options, Quantity qu
     for (size_t c = 0; c < 3; ++c) out[c * outStride + i] = static_cast<float>(result[static_cast<int>(c)]);
 }
 
-float Stretch(float const* planes, size_t stride, size_t i, std::array<double, 4> const& jacobian,
-              double meanArea) {
+float Stretch(MapSamples const& samples, size_t i) {
+    float const* const planes = samples.planes;
+    size_t const stride = samples.stride;
+    auto const& jacobian = samples.jacobians[i];
     auto const at = [&](int channel) {
         return Eigen::Vector3d(planes[channel * stride + i], planes[(channel + 1) * stride + i],
                                planes[(channel + 2) * stride + i]);
     };
     double const area = at(eval::kTangentSX).cross(at(eval::kTangentTX)).norm();
     double const texture = std::abs(jacobian[0] * jacobian[3] - jacobian[1] * jacobian[2]);
-    double const ratio = area / (texture * meanArea);
+    double const ratio = area / (texture * samples.meanArea);
     // A point without area or without texture area has no stretch; the bounds keep it a number.
     if (!(ratio > 0x1p-60)) return -60.0f;
     return ratio < 0x1p60 ? PortableLog2(static_cast<float>(ratio)) : 60.0f;
 }
 
+void EvaluateNoise(MapOptions const& options, MapSamples const& samples, float* out, size_t outStride) {
+    double const low = samples.noiseLow, range = samples.noiseHigh - low;
+    for (size_t i = 0; i < samples.count; ++i) {
+        double const value = samples.noise[i];
+        double const share = range > 0.0 ? std::clamp((value - low) / range, 0.0, 1.0) : 0.5;
+        if (options.ramp) {
+            auto const colour = options.ramp->Evaluate(share);
+            for (size_t c = 0; c < 3; ++c) out[c * outStride + i] = static_cast<float>(colour[c]);
+        } else {
+            out[i] = static_cast<float>(options.isNormalized ? share : value);
+        }
+    }
+}
+
 }  // namespace
 
-void EvaluateMap(Map const& map, MapOptions const& options, Quantity quantity, float const* planes,
-                 size_t stride, size_t count, std::span<std::array<double, 4> const> jacobians,
-                 double meanArea, float* out, size_t outStride) {
+void EvaluateMap(Map const& map, MapOptions const& options, MapSamples const& samples, float* out, size_t outStride) {
+    float const* const planes = samples.planes;
+    size_t const stride = samples.stride, count = samples.count;
     auto const copy = [&](int channel, int to) {
         std::copy_n(planes + static_cast<size_t>(channel) * stride, count,
                     out + static_cast<size_t>(to) * outStride);
@@ -244,17 +267,18 @@ void EvaluateMap(Map const& map, MapOptions const& options, Quantity quantity, f
         case MapKind::Normal: copyVector(eval::kNormalX); break;
         case MapKind::Displacement:
             for (size_t i = 0; i < count; ++i) {
-                EvaluateDisplacement(map, options, quantity, planes, stride, i, jacobians, out, outStride);
+                EvaluateDisplacement(map, options, samples, i, out, outStride);
             }
             break;
         case MapKind::Stretch:
-            for (size_t i = 0; i < count; ++i) out[i] = Stretch(planes, stride, i, jacobians[i], meanArea);
+            for (size_t i = 0; i < count; ++i) out[i] = Stretch(samples, i);
             break;
         case MapKind::Primvar:
             for (int c = 0; c < map.GetNumChannels(); ++c) {
-                copy(eval::GetNumChannels(quantity) + map.extraChannel - 3 + c, c);
+                copy(eval::GetNumChannels(samples.quantity) + map.extraChannel - 3 + c, c);
             }
             break;
+        case MapKind::Noise: EvaluateNoise(options, samples, out, outStride); break;
     }
     if (options.hasEncoding) {
         auto const scale = static_cast<float>(options.encodeScale);

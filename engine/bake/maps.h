@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "engine/bake/uv_raster.h"
+#include "engine/noise/colour_ramp.h"
 #include "engine/scene.h"
 #include "eval/surface_kernel.h"
 
@@ -12,7 +14,7 @@ namespace limn::engine {
 
 enum class MapKind {
     Mean, Gaussian, K1, K2, Curvedness, ShapeIndex, Curvature, PrincipalDirection, Position, Normal,
-    Displacement, Stretch, Primvar
+    Displacement, Stretch, Primvar, Noise
 };
 
 /// How texels of a map are averaged (supersampling, mip levels): plainly, or as what they are.
@@ -41,6 +43,8 @@ struct MapOptions {
     bool hasOtherMesh = false;         ///< --against was given
     bool hasEncoding = false;
     double encodeScale = 1.0, encodeOffset = 0.0;
+    bool isNormalized = false;         ///< --normalize: noise from 0 to 1
+    std::optional<ColourRamp> ramp;    ///< --noise-ramp: noise as colours
 };
 
 /// Turns names into maps. \throws Error BadOption, listing the maps there are
@@ -52,16 +56,19 @@ eval::Quantity FindQuantity(std::span<Map const> maps);
 /// True where a map needs d(u,v)/d(s,t): tangent space and stretch.
 bool NeedsJacobian(Map const& map, MapOptions const& options);
 
-/// Computes one map's channels for a block of samples.
-///
-/// \param planes     a block of SurfaceSampler: planes[c * stride + i]
-/// \param quantity   what the block holds
-/// \param jacobians  per sample; empty unless NeedsJacobian
-/// \param meanArea   surface area per texture area over the whole mesh (stretch)
-/// \param out        out[c * outStride + i]
-void EvaluateMap(Map const& map, MapOptions const& options, eval::Quantity quantity, float const* planes,
-                 size_t stride, size_t count, std::span<std::array<double, 4> const> jacobians,
-                 double meanArea, float* out, size_t outStride);
+/// A block of samples with everything that maps are made of.
+struct MapSamples {
+    eval::Quantity quantity;  ///< what the planes hold
+    float const* planes;      ///< a block of SurfaceSampler: planes[c * stride + i]
+    size_t stride, count;
+    std::span<std::array<double, 4> const> jacobians;  ///< per sample; empty unless NeedsJacobian
+    double meanArea;                ///< surface area per texture area over the whole mesh (stretch)
+    std::span<double const> noise;  ///< per sample; empty unless a map shows it
+    double noiseLow, noiseHigh;     ///< its range over the whole surface
+};
+
+/// Computes one map's channels for a block of samples: out[c * outStride + i].
+void EvaluateMap(Map const& map, MapOptions const& options, MapSamples const& samples, float* out, size_t outStride);
 
 /// arctangent of y / x in all quadrants and the binary logarithm, from basic operations only: the
 /// same bits on every CPU, accurate to 1e-7 (libm's depend on the CPU).

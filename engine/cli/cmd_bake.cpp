@@ -20,6 +20,9 @@ struct Arguments {
     bool isHalf = false, hasMips = false, hasCoverage = false, hasPreview = false, isVector = false,
          skipExisting = false, hasAudit = false;
     double auditBound = 1e-3;
+    engine::NoiseOptions noise;
+    std::string noiseRamp;
+    bool isNormalized = false;
 };
 
 int ParseInteger(std::string const& option, std::string_view text, int low, int high) {
@@ -75,6 +78,9 @@ engine::BakeOptions MakeOptions(Arguments const& a, CommonOptions const& common)
         options.maps.encodeScale = ParseNumber("--encode", std::string_view(a.encode).substr(0, comma));
         options.maps.encodeOffset = ParseNumber("--encode", std::string_view(a.encode).substr(comma + 1));
     }
+    options.noise = a.noise;
+    options.maps.isNormalized = a.isNormalized;
+    if (!a.noiseRamp.empty()) options.maps.ramp = engine::ColourRamp::Parse(a.noiseRamp);
     ParseSize(a.size, options);
     ParseTiles(a.tiles, options);
     options.samplesPerSide = a.samples;
@@ -168,7 +174,7 @@ Verb AddBake(CLI::App& app) {
     verb->add_option("-o,--output", a->pattern, "output path with {map}, {mesh}, <UDIM> or {udim}")->required();
     verb->add_option("--maps", a->maps,
                      "comma-separated: mean, gaussian, k1, k2, curvedness, shape-index, curvature, principal-direction, "
-                     "position, normal, displacement, stretch, primvar:NAME")
+                     "position, normal, displacement, stretch, noise, primvar:NAME")
         ->delimiter(',')
         ->required();
     verb->add_option("--size", a->size, "texels: N or WxH (default 2048)");
@@ -185,6 +191,14 @@ Verb AddBake(CLI::App& app) {
     verb->add_flag("--vector", a->isVector, "displacement as a vector");
     verb->add_option("--space", a->space, "object (default) or tangent, of vector displacement")
         ->check(CLI::IsMember({"object", "tangent"}));
+    verb->add_option("--noise-octaves", a->noise.octaves, "levels of refinement with noise each (default 4)")->check(CLI::Range(1, 10));
+    verb->add_option("--noise-frequency", a->noise.frequency,
+                     "noise cells per unit length in the first octave (default: half a cell per mean edge)")
+        ->check(CLI::Range(1e-12, 1e12));
+    verb->add_option("--noise-gain", a->noise.gain, "amplitude from octave to octave (default 0.5)")->check(CLI::Range(0.0, 16.0));
+    verb->add_option("--noise-seed", a->noise.seed, "another noise for every number (default 0)");
+    verb->add_option("--noise-ramp", a->noiseRamp, "noise as colours: '#rrggbb,#rrggbb,...' from low to high, equally spaced");
+    verb->add_flag("--normalize", a->isNormalized, "noise from 0 to 1 over the whole surface");
     verb->add_flag("--audit", a->hasAudit, "check seams, coverage and Gauss-Bonnet, and report them");
     verb->add_option("--audit-bound", a->auditBound, "of the Gauss-Bonnet error (default 1e-3); missed: exit status 4");
     verb->add_option("--groups", a->groups, "only faces of these usemtl, g or o groups")->delimiter(',');

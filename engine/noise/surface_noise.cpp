@@ -1,0 +1,124 @@
+#include "engine/noise/surface_noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "engine/job.h"
+#include "engine/noise/gradient_noise.h"
+#include "eval/interpolate.h"
+#include "eval/refine_values.h"
+#include "eval/surface_sample.h"
+#include "far_ext/error.h"
+#include "far_ext/refined_cage.h"
+#include "far_ext/refiner.h"
+
+namespace limn::engine {
+
+namespace {
+
+/// Half a noise cell per mean edge of the cage: what its vertices can show.
+double FindFrequency(Far::TopologyLevel const& level, std::span<double const> positions) {
+    double length = 0.0;
+    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+        auto const ends = level.GetEdgeVertices(edge);
+        double square = 0.0;
+        for (size_t c = 0; c < 3; ++c) {
+            double const d = positions[3 * static_cast<size_t>(ends[0]) + c] - positions[3 * static_cast<size_t>(ends[1]) + c];
+            square += d * d;
+        }
+        length += std::sqrt(square);
+    }
+    return length > 0.0 ? 0.5 * level.GetNumEdges() / length : 1.0;
+}
+
+/// One octave at the limit points of a level's vertices.
+std::vector<double> MakeOctave(std::span<double const> limitPoints, int octave, double frequency, double amplitude,
+                               uint64_t seed) {
+    std::vector<double> values(limitPoints.size() / 3);
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, values.size(), 4096), [&](auto const& range) {
+        CheckInterrupted();
+        for (size_t i = range.begin(); i != range.end(); ++i) {
+            double const* const x = &limitPoints[3 * i];
+            uint64_t const own = seed + static_cast<uint64_t>(octave) * 0x9e3779b97f4a7c15ull;  // octaves differ
+            values[i] = amplitude * GradientNoise(own, frequency * x[0], frequency * x[1], frequency * x[2]);
+        }
+    });
+    return values;
+}
+
+/// Limits of all vertices of a level, `length` values each.
+std::vector<double> FindLimits(eval::Interpolator const& level, std::vector<double> const& values, int length) {
+    std::vector<double> limits(values.size());
+    level.GetOperator().Apply(values, length, limits);
+    return limits;
+}
+
+}  // namespace
+
+SurfaceNoise::SurfaceNoise(Scene const& scene, NoiseOptions const& options) {
+    int const levels = options.octaves - 1;
+    double const corners = static_cast<double>(scene.cage.faceVertices.size()) * std::pow(4.0, levels);
+    if (corners > 2e9) {
+        throw Error(ErrorCode::TooLarge, fmt::format("{}: {} octaves of noise would make {:.1e} face corners on the finest "
+                                                     "level; at most 2e9 can be indexed, take fewer octaves",
+                                                     scene.path, options.octaves, corners));
+    }
+    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    if (levels > 0) {
+        Far::TopologyRefiner::UniformOptions uniform(levels);
+        uniform.fullTopologyInLastLevel = true;
+        refiner->RefineUniform(uniform);
+    }
+    std::vector<double> positions = scene.positions;
+    double frequency = options.frequency > 0.0 ? options.frequency : FindFrequency(refiner->GetLevel(0), positions);
+    double amplitude = 1.0;
+    for (int level = 0; level <= levels; ++level, frequency *= 2.0, amplitude *= options.gain) {
+        CheckInterrupted();
+        if (level > 0) {
+            positions = eval::RefineValues<3>(*refiner, level, positions);
+            _values = eval::RefineValues<1>(*refiner, level, _values);
+        }
+        eval::Interpolator const interpolator(*refiner, level);
+        std::vector<double> const octave =
+            MakeOctave(FindLimits(interpolator, positions, 3), level, frequency, amplitude, options.seed);
+        std::vector<double> control(octave.size());
+        interpolator.Solve(octave, 1, control, {.tolerance = 1e-9, .onIteration = [](int, double) { CheckInterrupted(); }});
+        _values.resize(control.size(), 0.0);
+        for (size_t i = 0; i < control.size(); ++i) _values[i] += control[i];
+        if (level < levels) continue;
+        auto const limits = FindLimits(interpolator, _values, 1);
+        auto const [low, high] = std::minmax_element(limits.begin(), limits.end());
+        _low = *low;
+        _high = *high;
+    }
+    _cage = levels > 0 ? far_ext::MakeRefinedCage(*refiner, scene.cage) : scene.cage;
+    _cage.fvarChannels.clear();
+    auto const base = far_ext::CreateRefiner(scene.cage);
+    _faces = std::make_unique<eval::RefinedFaces>(eval::LimitSurface(*base), levels);
+    _refiner = far_ext::CreateRefiner(_cage);
+    _surface = std::make_unique<eval::LimitSurface>(*_refiner);
+}
+
+SurfaceNoise::Sampler::Sampler(SurfaceNoise const& noise) : _noise(noise), _tree(*noise._surface, noise._values, 1) {}
+
+void SurfaceNoise::Sampler::Evaluate(Index face, int domain, std::span<double const> s, std::span<double const> t,
+                                     std::span<double> values) {
+    // Places in the order of refined faces, each of which is bound once.
+    _places.clear();
+    for (size_t i = 0; i < s.size(); ++i) _places.push_back({_noise._faces->Find(face, domain, s[i], t[i]), i});
+    std::sort(_places.begin(), _places.end(), [](Place const& a, Place const& b) {
+        return a.at.face != b.at.face ? a.at.face < b.at.face : a.sample < b.sample;
+    });
+    Index bound = -1;
+    for (Place const& place : _places) {
+        if (place.at.face != bound) _tree.Bind(place.at.face);
+        bound = place.at.face;
+        values[place.sample] = eval::EvaluateChannel(_tree, place.at.domain, place.at.s, place.at.t, 0);
+    }
+}
+
+}  // namespace limn::engine
