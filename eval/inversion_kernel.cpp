@@ -9,7 +9,7 @@ namespace limn::eval {
 
 #define LIMN_DECLARE_KERNEL(name)                                                                               \
     namespace name {                                                                                            \
-    void FitInverse(InversionCell&, int);                                                                       \
+    void FitInverse(InversionCell&);                                                                            \
     void InvertTextureMap(InversionCell const&, double const*, double const*, int, double*, double*, Whereabouts*); \
     }
 LIMN_DECLARE_KERNEL(sse2)
@@ -17,9 +17,9 @@ LIMN_DECLARE_KERNEL(avx2)
 LIMN_DECLARE_KERNEL(avx512)
 #undef LIMN_DECLARE_KERNEL
 
-void FitInverse(InversionCell& cell, int numTexels) {
+void FitInverse(InversionCell& cell) {
     constexpr std::array kKernels{sse2::FitInverse, avx2::FitInverse, avx512::FitInverse};
-    kKernels[static_cast<size_t>(GetInstructionSet())](cell, numTexels);
+    kKernels[static_cast<size_t>(GetInstructionSet())](cell);
 }
 
 void InvertTextureMap(InversionCell const& cell, double const* targetX, double const* targetY, int count, double* x,

@@ -31,6 +31,7 @@ struct InversionCell {
     double x, y;             ///< the cell's centre, about the piece's
     double value[2];         ///< the map at (x, y)
     double inverse[4];       ///< inverse of the Jacobian d(u,v)/d(x,y) there, by rows; zero if singular
+    double area;             ///< of the cell, in texels
     double reach;            ///< parameters of the texels asked for stay within this of (x, y)
     double bend;             ///< bound of the map's second derivatives per texel, squared inverse Jacobian
     double centre;           ///< (s, t) = (x, y) + centre
@@ -39,8 +40,8 @@ struct InversionCell {
     double guess[2][10];     ///< the fitted inverse; filled by FitInverse
 };
 
-/// Fits the cell's inverse; where there are too few texels for that to pay, its linear part will do.
-void FitInverse(InversionCell& cell, int numTexels);
+/// Fits the cell's inverse; where the cell is too small for that to pay, its linear part will do.
+void FitInverse(InversionCell& cell);
 
 /// Answers for `count` texels. All arrays reach to the next multiple of kInversionLanes.
 ///

@@ -48,6 +48,7 @@ TextureCell::TextureCell(TexturePiece const& piece, double x, double y, double h
               .y = y,
               .value = {u, v},
               .inverse = {inverse[0], inverse[1], inverse[2], inverse[3]},
+              .area = std::abs(det) * 4.0 * half * half,
               .reach = reach,
               .bend = bend,
               .centre = piece.GetCentre(),

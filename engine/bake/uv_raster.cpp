@@ -166,15 +166,18 @@ void UVRaster::RasterCell(TexturePiece const& piece, double x, double y, double 
     int numTexels = 0;
     for (int row = firstRow; row <= lastRow; ++row) {
         auto const [from, to] = cell.FindColumns(row);
-        int const first = std::max(_firstColumn, static_cast<int>(std::ceil(std::clamp(from, -1.0, 1e9))));
-        int const last = std::min(_lastColumn, static_cast<int>(std::floor(std::clamp(to, -1.0, 1e9))));
+        int first = std::max(_firstColumn, static_cast<int>(std::ceil(std::clamp(from, -1.0, 1e9))));
+        int last = std::min(_lastColumn, static_cast<int>(std::floor(std::clamp(to, -1.0, 1e9))));
+        int const start = (row - _band->firstRow) * _band->width;
+        while (first <= last && IsSettled(start + first)) ++first;
+        while (first <= last && IsSettled(start + last)) --last;
         if (first > last) continue;
         _rows.push_back({row, first, last - first + 1, numTexels});
         numTexels += last - first + 1;
     }
     if (_rows.empty()) return;
     GatherTargets(piece, numTexels);
-    eval::FitInverse(cell.GetModel(), numTexels);
+    eval::FitInverse(cell.GetModel());
     eval::InvertTextureMap(cell.GetModel(), _targetX.data(), _targetY.data(), numTexels, _x.data(), _y.data(), _where.data());
     Accept(piece, hits);
 }
@@ -187,7 +190,7 @@ void UVRaster::GatherTargets(TexturePiece const& piece, int numTexels) {
         for (auto* values : {&_targetX, &_targetY, &_x, &_y}) values->resize(padded);
         _where.resize(padded);
     }
-    for (TexelRow const& row : _rows) {
+    for (CandidateRow const& row : _rows) {
         double const x = row.column - piece.originX, y = row.row - piece.originY;
         double *const toX = &_targetX[row.first], *const toY = &_targetY[row.first];
         for (int i = 0; i < row.count; ++i) {
@@ -206,7 +209,7 @@ void UVRaster::Accept(TexturePiece const& piece, TexelHits& hits) {
     double const centre = _tree.GetCentre(), scale = piece.domain.scale;
     auto const placeS = [&](double s) { return piece.domain.origin[0] + scale * s; };
     auto const placeT = [&](double t) { return piece.domain.origin[1] + scale * t; };
-    for (TexelRow const& row : _rows) {
+    for (CandidateRow const& row : _rows) {
         int const texel = (row.row - _band->firstRow) * _band->width + row.column;
         Index* const owner = &_band->owner[texel];
         eval::Whereabouts const* const where = &_where[row.first];
@@ -221,7 +224,7 @@ void UVRaster::Accept(TexturePiece const& piece, TexelHits& hits) {
                 if (i == row.count) break;
             }
             // Outside, or found from a neighbouring cell or piece before.
-            if (where[i] == eval::Whereabouts::Outside || owner[i] == _face) continue;
+            if (where[i] == eval::Whereabouts::Outside || owner[i] == _face || IsSettled(texel + i)) continue;
             double s = x[i] + centre, t = y[i] + centre;
             size_t const target = static_cast<size_t>(row.first + i);
             if (!IsCovered(piece, texel + i, where[i] != eval::Whereabouts::Unsolved, _targetX[target], _targetY[target], s, t)) continue;

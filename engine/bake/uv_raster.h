@@ -101,6 +101,8 @@ private:
     void RasterNode(int node, int depth, TexelHits& hits);
     void RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain const& domain, TexelHits& hits);
     void RasterCell(TexturePiece const& piece, double x, double y, double half, TexelHits& hits);
+    /// True if nothing is left to learn of a texel: it has an owner, and is known to be covered twice.
+    bool IsSettled(int texel) const { return _band->overlap[texel] && _band->owner[texel] >= 0; }
     void GatherTargets(TexturePiece const& piece, int numTexels);
     void Accept(TexturePiece const& piece, TexelHits& hits);
     bool IsCovered(TexturePiece const& piece, int texel, bool isSolved, double targetX, double targetY, double& s,
@@ -115,11 +117,11 @@ private:
     TexelBand* _band = nullptr;
     int _firstColumn = 0, _lastColumn = 0;
     // candidates of the cell at hand, row by row, and the answers for them
-    struct TexelRow {
+    struct CandidateRow {
         int row, column, count;
         int first;  // into the arrays below
     };
-    std::vector<TexelRow> _rows;
+    std::vector<CandidateRow> _rows;
     std::vector<double> _targetX, _targetY, _x, _y;
     std::vector<eval::Whereabouts> _where;
 };
