@@ -1,7 +1,9 @@
 #include "engine/bake/bake.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <exception>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -252,13 +254,17 @@ void TileJob::Run() {
     };
     Window recent;
     int next = 0, nextOut = 0;
+    // The last filter keeps what it catches until the pipeline has run dry: TBB drops, and never frees, the
+    // bands that wait before a serial filter when a filter throws.
+    std::exception_ptr failure;
+    std::atomic<bool> hasFailed{false};
     size_t const numTokens = static_cast<size_t>(tbb::this_task_arena::max_concurrency()) + 2;
     // Input runs `halo` beyond the last band, so that the last bands, too, come out of the window.
     tbb::parallel_pipeline(
         numTokens,
         tbb::make_filter<void, int>(tbb::filter_mode::serial_in_order,
                                     [&](tbb::flow_control& control) {
-                                        if (next == numBands + halo) control.stop();
+                                        if (next == numBands + halo || hasFailed) control.stop();
                                         return next++;
                                     }) &
             tbb::make_filter<int, std::shared_ptr<Band>>(
@@ -289,11 +295,17 @@ void TileJob::Run() {
                 }) &
             tbb::make_filter<std::shared_ptr<PackedBand>, void>(
                 tbb::filter_mode::serial_in_order, [&](std::shared_ptr<PackedBand> const& band) {
-                    if (!band) return;
-                    CheckInterrupted();
-                    Write(*band);
-                    _job.Advance();
+                    if (!band || hasFailed) return;
+                    try {
+                        CheckInterrupted();
+                        Write(*band);
+                        _job.Advance();
+                    } catch (...) {
+                        failure = std::current_exception();
+                        hasFailed = true;
+                    }
                 }));
+    if (failure) std::rethrow_exception(failure);
 }
 
 void TileJob::Write(PackedBand const& band) {
