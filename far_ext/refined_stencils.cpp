@@ -1,0 +1,438 @@
+#include "far_ext/refined_stencils.h"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <unordered_map>
+
+#include <fmt/format.h>
+#include <opensubdiv/far/primvarRefiner.h>
+#include <opensubdiv/far/topologyDescriptor.h>
+#include <opensubdiv/far/topologyRefinerFactory.h>
+
+#include "far_ext/error.h"
+#include "far_ext/ring_subdivision.h"
+
+namespace limn::far_ext {
+
+namespace {
+
+using Mode = RefinedStencilOptions::Mode;
+using Level = Far::TopologyLevel;
+
+Index CountPoints(Level const& level, RefinedStencilOptions const& options) {
+    return options.mode == Mode::FaceVarying ? level.GetNumFVarValues(options.fvarChannel) : level.GetNumVertices();
+}
+
+Far::ConstIndexArray GetFacePoints(Level const& level, Index face, RefinedStencilOptions const& options) {
+    return options.mode == Mode::FaceVarying ? level.GetFaceFVarValues(face, options.fvarChannel)
+                                             : level.GetFaceVertices(face);
+}
+
+// -------- one level: rows as PrimvarRefiner blends them
+
+/// What PrimvarRefiner writes to instead of a value: a row's controls and weights.
+struct RecordedRow {
+    std::vector<std::pair<Index, float>>* entries = nullptr;  // of all rows, one after another
+    size_t begin = 0, size = 0;
+
+    void Clear() { size = 0; }
+    void AddWithWeight(Index control, float weight) {
+        if (weight == 0.0f) return;
+        if (size == 0) begin = entries->size();
+        auto const own = entries->begin() + static_cast<std::ptrdiff_t>(begin);
+        auto const same = std::find_if(own, entries->end(), [&](auto const& entry) { return entry.first == control; });
+        if (same != entries->end()) {
+            same->second += weight;
+        } else {
+            entries->emplace_back(control, weight);
+            ++size;
+        }
+    }
+    /// Rows blend into later ones: an edge's takes in those of its faces.
+    void AddWithWeight(RecordedRow const& other, float weight) {
+        for (size_t k = other.begin; k < other.begin + other.size; ++k) {
+            auto const [control, own] = (*entries)[k];
+            AddWithWeight(control, weight * own);
+        }
+    }
+};
+
+/// Stands for the control points: point i is its own number.
+struct ControlNumbers {
+    Index operator[](Index control) const { return control; }
+};
+
+StencilGroups RecordOneLevel(Far::TopologyRefiner const& refiner, RefinedStencilOptions const& options) {
+    Index const numRows = CountPoints(refiner.GetLevel(1), options);
+    std::vector<std::pair<Index, float>> entries;
+    entries.reserve(static_cast<size_t>(numRows) * 8);
+    std::vector<RecordedRow> rows(static_cast<size_t>(numRows), RecordedRow{&entries});
+    Far::PrimvarRefinerReal<float> const primvars(refiner);
+    ControlNumbers const controls;
+    switch (options.mode) {
+        case Mode::Vertex: primvars.Interpolate(1, controls, rows); break;
+        case Mode::Varying: primvars.InterpolateVarying(1, controls, rows); break;
+        case Mode::FaceVarying: primvars.InterpolateFaceVarying(1, controls, rows, options.fvarChannel); break;
+    }
+    StencilGroupsBuilder builder(numRows, CountPoints(refiner.GetLevel(0), options), 1);
+    std::vector<Index> indices;
+    std::vector<float> weights;
+    for (Index row = 0; row < numRows; ++row) {
+        indices.clear();
+        weights.clear();
+        for (size_t k = rows[row].begin; k < rows[row].begin + rows[row].size; ++k) {
+            indices.push_back(entries[k].first);
+            weights.push_back(entries[k].second);
+        }
+        builder.AddSingle(row, indices, weights);
+    }
+    return builder.Finish();
+}
+
+// -------- more levels: by face
+
+/// All points of a face with `size` corners that are refined `depth` times, whatever the mesh round
+/// it: which corners of which descendant faces they are, and how they follow from the children's.
+/// Descendants are numbered as OpenSubdiv does, which is how they are numbered in any mesh.
+struct FaceLattice {
+    struct Place {
+        int face, corner;  ///< one of the places where the point is found
+    };
+    struct Child {
+        std::vector<int> pointOfRow;  ///< of this lattice, per point of the child's own lattice
+        int size;                     ///< corners of the child
+    };
+    std::vector<Place> places;                ///< per point
+    std::vector<int> inside;                  ///< points within the face, in OpenSubdiv's order
+    std::vector<std::vector<int>> onEdge;     ///< per edge, without its ends
+    std::vector<int> atCorner;                ///< per corner
+    std::vector<Child> children;
+};
+
+class LatticeCache {
+public:
+    explicit LatticeCache(Sdc::SchemeType scheme) : _scheme(scheme) {}
+
+    FaceLattice const& Get(int size, int depth) {
+        auto& slot = _lattices[{size, depth}];
+        if (!slot) slot = std::make_unique<FaceLattice>(Build(size, depth));
+        return *slot;
+    }
+
+private:
+    FaceLattice Build(int size, int depth) {
+        std::vector<Index> corners(static_cast<size_t>(size));
+        for (int i = 0; i < size; ++i) corners[i] = i;
+        Far::TopologyDescriptor face;
+        face.numVertices = size;
+        face.numFaces = 1;
+        face.numVertsPerFace = &size;
+        face.vertIndicesPerFace = corners.data();
+        using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
+        std::unique_ptr<Far::TopologyRefiner> const refiner(Factory::Create(face, Factory::Options(_scheme)));
+        refiner->RefineUniform(Far::TopologyRefiner::UniformOptions(depth));
+
+        FaceLattice lattice;
+        Level const fine = refiner->GetLevel(depth);
+        lattice.places.assign(static_cast<size_t>(fine.GetNumVertices()), {-1, -1});
+        for (Index f = 0; f < fine.GetNumFaces(); ++f) {
+            auto const vertices = fine.GetFaceVertices(f);
+            for (int i = 0; i < vertices.size(); ++i) {
+                if (lattice.places[vertices[i]].face < 0) lattice.places[vertices[i]] = {f, i};
+            }
+        }
+        SortByBoundary(*refiner, depth, lattice);
+        if (depth > 0) AddChildren(*refiner, depth, lattice);
+        return lattice;
+    }
+
+    /// Follows the face's corners and edges down to the last level.
+    static void SortByBoundary(Far::TopologyRefiner const& refiner, int depth, FaceLattice& lattice) {
+        Level const base = refiner.GetLevel(0);
+        std::vector<char> isInside(lattice.places.size(), 1);
+        auto const descend = [&](int level, Index vertex) {
+            for (; level < depth; ++level) vertex = refiner.GetLevel(level).GetVertexChildVertex(vertex);
+            isInside[vertex] = 0;
+            return vertex;
+        };
+        for (Index corner : base.GetFaceVertices(0)) lattice.atCorner.push_back(descend(0, corner));
+        for (Index edge : base.GetFaceEdges(0)) {
+            std::vector<int> points;
+            std::vector<Index> pieces{edge};
+            for (int level = 0; level < depth; ++level) {
+                std::vector<Index> halves;
+                for (Index piece : pieces) {
+                    points.push_back(descend(level + 1, refiner.GetLevel(level).GetEdgeChildVertex(piece)));
+                    for (Index half : refiner.GetLevel(level).GetEdgeChildEdges(piece)) halves.push_back(half);
+                }
+                pieces = std::move(halves);
+            }
+            std::sort(points.begin(), points.end());
+            lattice.onEdge.push_back(std::move(points));
+        }
+        for (size_t point = 0; point < isInside.size(); ++point) {
+            if (isInside[point]) lattice.inside.push_back(static_cast<int>(point));
+        }
+    }
+
+    void AddChildren(Far::TopologyRefiner const& refiner, int depth, FaceLattice& lattice) {
+        Level const fine = refiner.GetLevel(depth);
+        auto const children = refiner.GetLevel(0).GetFaceChildFaces(0);
+        int const perChild = fine.GetNumFaces() / children.size();
+        for (int c = 0; c < children.size(); ++c) {
+            FaceLattice::Child child;
+            child.size = refiner.GetLevel(1).GetFaceVertices(children[c]).size();
+            for (auto const& [face, corner] : Get(child.size, depth - 1).places) {
+                child.pointOfRow.push_back(fine.GetFaceVertices(c * perChild + face)[corner]);
+            }
+            lattice.children.push_back(std::move(child));
+        }
+    }
+
+    Sdc::SchemeType _scheme;
+    std::map<std::pair<int, int>, std::unique_ptr<FaceLattice>> _lattices;
+};
+
+/// Rows of doubles, all of one length.
+struct DenseRows {
+    int numColumns = 0;
+    std::vector<double> values;
+
+    double* operator[](int row) { return &values[static_cast<size_t>(row) * numColumns]; }
+    double const* operator[](int row) const { return &values[static_cast<size_t>(row) * numColumns]; }
+};
+
+/// The weights of all refined points of rings, each ring and depth worked out once.
+class RingWeights {
+public:
+    RingWeights(Far::TopologyRefiner const& refiner, bool isVarying, LatticeCache& lattices)
+        : _scheme(refiner.GetSchemeType()),
+          _options(refiner.GetSchemeOptions()),
+          _use(isVarying ? RingSubdivision::Use::VaryingRefinement : RingSubdivision::Use::Refinement),
+          _lattices(lattices) {}
+
+    struct Node {
+        FaceRing const* ring = nullptr;
+        std::vector<SparseRows> steps;             // per child: its points over this ring's
+        std::vector<Node*> children;
+        std::vector<std::unique_ptr<DenseRows>> rows;  // per depth: the lattice's points over the ring's
+    };
+
+    Node& Find(FaceRing const& ring) {
+        auto const [found, isNew] = _nodes.try_emplace(ring);
+        if (isNew) found->second.ring = &found->first;
+        return found->second;
+    }
+
+    DenseRows const& Get(Node& node, int depth) {
+        if (static_cast<int>(node.rows.size()) <= depth) node.rows.resize(static_cast<size_t>(depth) + 1);
+        if (!node.rows[depth]) {
+            node.rows[depth] = std::make_unique<DenseRows>(depth == 0 ? MakeCorners(*node.ring) : Compose(node, depth));
+        }
+        return *node.rows[depth];
+    }
+
+private:
+    struct Hash {
+        size_t operator()(FaceRing const& ring) const { return ring.Hash(); }
+    };
+
+    static DenseRows MakeCorners(FaceRing const& ring) {
+        auto const& points = ring.IsFaceVarying() ? ring.valueIndices : ring.faceVertices;
+        int const size = ring.faceSizes[0];
+        DenseRows rows{ring.numPoints, std::vector<double>(static_cast<size_t>(size) * ring.numPoints, 0.0)};
+        for (int i = 0; i < size; ++i) rows[i][points[i]] = 1.0;
+        return rows;
+    }
+
+    void Subdivide(Node& node) {
+        auto subdivision = RingSubdivision::Build(*node.ring, _scheme, _options, _use);
+        for (auto& child : subdivision.children) {
+            node.steps.push_back(std::move(child.weights));
+            node.children.push_back(&Find(child.ring));
+        }
+    }
+
+    DenseRows Compose(Node& node, int depth) {
+        if (node.children.empty()) Subdivide(node);
+        FaceLattice const& lattice = _lattices.Get(node.ring->faceSizes[0], depth);
+        int const numColumns = node.ring->numPoints;
+        DenseRows rows{numColumns, std::vector<double>(lattice.places.size() * numColumns, 0.0)};
+        std::vector<char> isDone(lattice.places.size(), 0);
+        for (size_t c = 0; c < node.children.size(); ++c) {
+            DenseRows const& fine = Get(*node.children[c], depth - 1);
+            SparseRows const& step = node.steps[c];
+            auto const& pointOfRow = lattice.children[c].pointOfRow;
+            for (int row = 0; row < static_cast<int>(pointOfRow.size()); ++row) {
+                if (isDone[pointOfRow[row]]) continue;  // children share the points between them
+                isDone[pointOfRow[row]] = 1;
+                double* const to = rows[pointOfRow[row]];
+                for (int i = 0; i < fine.numColumns; ++i) {
+                    double const weight = fine[row][i];
+                    if (weight == 0.0) continue;
+                    for (int k = step.offsets[i]; k < step.offsets[i + 1]; ++k) {
+                        to[step.indices[k]] += weight * step.weights[k];
+                    }
+                }
+            }
+        }
+        return rows;
+    }
+
+    Sdc::SchemeType _scheme;
+    Sdc::Options _options;
+    RingSubdivision::Use _use;
+    LatticeCache& _lattices;
+    std::unordered_map<FaceRing, Node, Hash> _nodes;
+};
+
+/// Walks the base faces and gives every refined point to the first face that has it.
+class FaceWalk {
+public:
+    FaceWalk(Far::TopologyRefiner const& refiner, RefinedStencilOptions const& options)
+        : _refiner(refiner),
+          _options(options),
+          _depth(refiner.GetMaxLevel()),
+          _base(refiner.GetLevel(0)),
+          _fine(refiner.GetLevel(_depth)),
+          _lattices(refiner.GetSchemeType()),
+          _weights(refiner, options.mode == Mode::Varying, _lattices),
+          _gatherer(_base, options.mode == Mode::FaceVarying ? options.fvarChannel : -1),
+          _isDone(static_cast<size_t>(CountPoints(_fine, options)), 0),
+          _builder(CountPoints(_fine, options), CountPoints(_base, options), 1) {}
+
+    StencilGroups Build() {
+        for (Index face = 0; face < _base.GetNumFaces(); ++face) AddFace(face);
+        AddUnusedPoints();
+        return _builder.Finish();
+    }
+
+private:
+    /// Weights of some points of a ring's lattice, as a block; or of one point, as a single row.
+    struct Part {
+        int block = -1;
+        std::vector<int> columns;    // of the ring's points
+        std::vector<float> weights;  // of a single row
+    };
+    struct RingParts {
+        Part inside;
+        std::vector<Part> edges, corners;
+    };
+
+    void AddFace(Index face) {
+        _gatherer.Gather(face, _ring, _points);
+        RingParts const& parts = GetParts(_ring);
+        FaceLattice const& lattice = _lattices.Get(_ring.faceSizes[0], _depth);
+        Index first = face;
+        for (int level = 0; level < _depth; ++level) first = _refiner.GetLevel(level).GetFaceChildFaces(first)[0];
+        AddPart(parts.inside, lattice, lattice.inside, first);
+        for (size_t i = 0; i < parts.edges.size(); ++i) AddPart(parts.edges[i], lattice, lattice.onEdge[i], first);
+        for (size_t i = 0; i < parts.corners.size(); ++i) AddPart(parts.corners[i], lattice, {lattice.atCorner[i]}, first);
+    }
+
+    void AddPart(Part const& part, FaceLattice const& lattice, std::vector<int> const& points, Index first) {
+        _rows.clear();
+        for (int point : points) {
+            auto const [face, corner] = lattice.places[point];
+            _rows.push_back(GetFacePoints(_fine, first + face, _options)[corner]);
+        }
+        if (_rows.empty() || _isDone[_rows[0]]) return;  // edges and corners are shared as a whole
+        for (Index row : _rows) _isDone[row] = 1;
+        _controls.clear();
+        for (int column : part.columns) _controls.push_back(_points[column]);
+        if (part.block >= 0) {
+            _builder.AddGroup(part.block, _rows, _controls);
+            return;
+        }
+        size_t const size = part.columns.size();
+        for (size_t i = 0; i < _rows.size(); ++i) {
+            AddSingle(_rows[i], part.weights.data() + i * size);
+        }
+    }
+
+    /// A row of weights over _controls, without its zeros.
+    void AddSingle(Index row, float const* weights) {
+        _singleControls.clear();
+        _singleWeights.clear();
+        for (size_t i = 0; i < _controls.size(); ++i) {
+            if (weights[i] == 0.0f) continue;
+            _singleControls.push_back(_controls[i]);
+            _singleWeights.push_back(weights[i]);
+        }
+        _builder.AddSingle(row, _singleControls, _singleWeights);
+    }
+
+    RingParts const& GetParts(FaceRing const& ring) {
+        auto& node = _weights.Find(ring);
+        auto const [found, isNew] = _parts.try_emplace(&node);
+        RingParts& parts = found->second;
+        if (!isNew) return parts;
+        DenseRows const& rows = _weights.Get(node, _depth);
+        FaceLattice const& lattice = _lattices.Get(ring.faceSizes[0], _depth);
+        parts.inside = MakePart(rows, lattice.inside);
+        for (auto const& points : lattice.onEdge) parts.edges.push_back(MakePart(rows, points));
+        for (int point : lattice.atCorner) parts.corners.push_back(MakePart(rows, {point}));
+        return parts;
+    }
+
+    Part MakePart(DenseRows const& rows, std::vector<int> const& points) {
+        Part part;
+        for (int column = 0; column < rows.numColumns; ++column) {
+            auto const uses = [&](int point) { return static_cast<float>(rows[point][column]) != 0.0f; };
+            if (std::any_of(points.begin(), points.end(), uses)) part.columns.push_back(column);
+        }
+        for (int point : points) {
+            for (int column : part.columns) part.weights.push_back(static_cast<float>(rows[point][column]));
+        }
+        constexpr size_t kLeastRows = 3;  // the three of an edge refined twice
+        if (points.size() >= kLeastRows && part.columns.size() <= StencilGroups::kMaxColumns) {
+            part.block = _builder.AddBlock(static_cast<int>(points.size()), static_cast<int>(part.columns.size()), part.weights);
+        }
+        return part;
+    }
+
+    /// Vertices without faces have no rule but to stay.
+    void AddUnusedPoints() {
+        if (_options.mode == Mode::FaceVarying) return;
+        float const one = 1.0f;
+        for (Index vertex = 0; vertex < _base.GetNumVertices(); ++vertex) {
+            if (_base.GetVertexFaces(vertex).size() != 0) continue;
+            Index row = vertex;
+            for (int level = 0; level < _depth && row >= 0; ++level) row = _refiner.GetLevel(level).GetVertexChildVertex(row);
+            if (row < 0) continue;
+            _controls = {vertex};
+            AddSingle(row, &one);
+        }
+    }
+
+    Far::TopologyRefiner const& _refiner;
+    RefinedStencilOptions _options;
+    int _depth;
+    Level _base, _fine;  // views
+    LatticeCache _lattices;
+    RingWeights _weights;
+    FaceRingGatherer _gatherer;
+    std::vector<char> _isDone;
+    StencilGroupsBuilder _builder;
+    std::unordered_map<RingWeights::Node const*, RingParts> _parts;
+    FaceRing _ring;                                   // scratch from here on
+    std::vector<Index> _points, _rows, _controls, _singleControls;
+    std::vector<float> _singleWeights;
+};
+
+}  // namespace
+
+StencilGroups BuildRefinedStencils(Far::TopologyRefiner const& refiner, RefinedStencilOptions const& options) {
+    if (!refiner.IsUniform() || refiner.GetMaxLevel() < 1) {
+        throw Error(ErrorCode::BadOption, "stencils are built for a topology that is refined uniformly, to level 1 or more");
+    }
+    int const numChannels = refiner.GetNumFVarChannels();
+    if (options.mode == Mode::FaceVarying && (options.fvarChannel < 0 || options.fvarChannel >= numChannels)) {
+        throw Error(ErrorCode::BadOption, fmt::format("there is no face-varying channel {}; the topology has {}",
+                                                      options.fvarChannel, numChannels));
+    }
+    return refiner.GetMaxLevel() == 1 ? RecordOneLevel(refiner, options) : FaceWalk(refiner, options).Build();
+}
+
+}  // namespace limn::far_ext

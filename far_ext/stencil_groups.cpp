@@ -1,0 +1,290 @@
+#include "far_ext/stencil_groups.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <unordered_map>
+
+#include "far_ext/error.h"
+
+namespace limn::far_ext {
+
+namespace {
+
+uint64_t Mix(uint64_t value) {
+    value *= 0x9e3779b97f4a7c15u;
+    value ^= value >> 29;
+    value *= 0xbf58476d1ce4e5b9u;
+    return value ^ (value >> 32);
+}
+
+/// Hash of 32-bit entries.
+template <class Entry>
+uint64_t HashOf(Entry const* entries, size_t count, uint64_t hash) {
+    static_assert(sizeof(Entry) == 4);
+    for (size_t i = 0; i < count; ++i) {
+        uint32_t bits;
+        std::memcpy(&bits, entries + i, 4);
+        hash = Mix(hash ^ bits);
+    }
+    return hash;
+}
+
+template <class Entry>
+size_t BytesOf(std::vector<Entry> const& entries) {
+    return entries.size() * sizeof(Entry);
+}
+
+}  // namespace
+
+size_t StencilGroups::GetMemory() const {
+    return BytesOf(blocks) + BytesOf(weights) + BytesOf(shapes) + BytesOf(runLengths) + BytesOf(groups) +
+           BytesOf(controls) + BytesOf(runStarts) + BytesOf(singles.rows) + BytesOf(singles.offsets) +
+           BytesOf(singles.indices) + BytesOf(singles.weightOffsets) + BytesOf(singles.weights);
+}
+
+StencilRows StencilGroups::Expand() const {
+    struct Place {
+        int group = -1;  // -1: single
+        int row = 0;     // within the group, or of the singles
+    };
+    std::vector<Place> places(static_cast<size_t>(numRows));
+    for (size_t g = 0; g < groups.size(); ++g) {
+        Shape const shape = shapes[groups[g].shape];
+        int inGroup = 0;
+        for (int run = 0; run < shape.numRuns; ++run) {
+            Index const start = runStarts[groups[g].firstStart + run];
+            for (int i = 0; i < runLengths[shape.firstRun + run]; ++i) {
+                places[start + i] = {static_cast<int>(g), inGroup++};
+            }
+        }
+    }
+    for (Index i = 0; i < singles.GetNumRows(); ++i) places[singles.rows.empty() ? i : singles.rows[i]].row = i;
+
+    StencilRows rows(numControls, numSets);
+    float entry[kMaxWeightSets];
+    for (Place const& place : places) {
+        if (place.group < 0) {
+            Index const begin = singles.offsets[place.row], size = singles.offsets[place.row + 1] - begin;
+            for (Index k = 0; k < size; ++k) {
+                for (int set = 0; set < numSets; ++set) {
+                    entry[set] = singles.weights[singles.weightOffsets[place.row] + set * size + k];
+                }
+                rows.AddEntry(singles.indices[begin + k], entry);
+            }
+        } else {
+            Group const& group = groups[place.group];
+            Block const& block = blocks[group.block];
+            int const panel = place.row / kRowsPerPanel, lane = place.row % kRowsPerPanel;
+            for (int column = 0; column < block.numColumns; ++column) {
+                size_t const at = block.firstWeight +
+                                  static_cast<size_t>(panel * block.numColumns + column) * kRowsPerPanel + lane;
+                bool isUsed = false;
+                for (int set = 0; set < numSets; ++set) {
+                    entry[set] = weights[at + set * block.GetSetSize()];
+                    isUsed |= entry[set] != 0.0f;
+                }
+                if (isUsed) rows.AddEntry(controls[group.firstControl + column], entry);
+            }
+        }
+        rows.EndRow();
+    }
+    return rows;
+}
+
+/// What has been kept so far, by hash; numbers are of blocks, shapes and single rows.
+struct StencilGroupsBuilder::Lookup {
+    std::unordered_multimap<uint64_t, int> blocks, shapes, singles;
+    std::vector<float> panels;  // scratch
+    std::vector<Index> starts;
+    std::vector<int> lengths;
+};
+
+namespace {
+
+/// The number kept under a hash for which isEqual holds, or -1.
+template <class IsEqual>
+int FindKept(std::unordered_multimap<uint64_t, int> const& kept, uint64_t hash, IsEqual isEqual) {
+    auto const [first, last] = kept.equal_range(hash);
+    auto const found = std::find_if(first, last, [&](auto const& entry) { return isEqual(entry.second); });
+    return found == last ? -1 : found->second;
+}
+
+}  // namespace
+
+StencilGroupsBuilder::StencilGroupsBuilder(Index numRows, Index numControls, int numSets)
+    : _lookup(std::make_unique<Lookup>()) {
+    _table.numRows = numRows;
+    _table.numControls = numControls;
+    _table.numSets = numSets;
+}
+
+StencilGroupsBuilder::~StencilGroupsBuilder() = default;
+
+int StencilGroupsBuilder::AddBlock(int numRows, int numColumns, std::vector<float> const& weights) {
+    constexpr int kLanes = StencilGroups::kRowsPerPanel;
+    StencilGroups::Block const block{numRows, numColumns, _table.weights.size()};
+    auto& panels = _lookup->panels;
+    panels.assign(block.GetSetSize() * _table.numSets, 0.0f);
+    auto from = weights.begin();
+    for (int set = 0; set < _table.numSets; ++set) {
+        for (int row = 0; row < numRows; ++row) {
+            float* to = &panels[set * block.GetSetSize() + static_cast<size_t>(row / kLanes) * numColumns * kLanes +
+                                row % kLanes];
+            for (int column = 0; column < numColumns; ++column, to += kLanes) *to = *from++;
+        }
+    }
+    uint64_t const hash = HashOf(panels.data(), panels.size(), (static_cast<uint64_t>(numRows) << 32) + static_cast<uint64_t>(numColumns));
+    int const kept = FindKept(_lookup->blocks, hash, [&](int other) {
+        auto const& b = _table.blocks[other];
+        return b.numRows == numRows && b.numColumns == numColumns &&
+               std::memcmp(&_table.weights[b.firstWeight], panels.data(), BytesOf(panels)) == 0;
+    });
+    if (kept >= 0) return kept;
+    int const number = static_cast<int>(_table.blocks.size());
+    _table.blocks.push_back(block);
+    _table.weights.insert(_table.weights.end(), panels.begin(), panels.end());
+    _lookup->blocks.emplace(hash, number);
+    return number;
+}
+
+void StencilGroupsBuilder::AddGroup(int block, std::vector<Index> const& rows, std::vector<Index> const& controls) {
+    auto& lengths = _lookup->lengths;
+    auto& starts = _lookup->starts;
+    lengths.clear();
+    starts.clear();
+    for (Index row : rows) {
+        if (starts.empty() || row != starts.back() + lengths.back()) {
+            starts.push_back(row);
+            lengths.push_back(0);
+        }
+        ++lengths.back();
+    }
+    uint64_t const hash = HashOf(lengths.data(), lengths.size(), lengths.size());
+    int shape = FindKept(_lookup->shapes, hash, [&](int other) {
+        auto const& s = _table.shapes[other];
+        return s.numRuns == static_cast<int>(lengths.size()) &&
+               std::equal(lengths.begin(), lengths.end(), _table.runLengths.begin() + s.firstRun);
+    });
+    if (shape < 0) {
+        shape = static_cast<int>(_table.shapes.size());
+        _table.shapes.push_back({static_cast<int>(_table.runLengths.size()), static_cast<int>(lengths.size())});
+        _table.runLengths.insert(_table.runLengths.end(), lengths.begin(), lengths.end());
+        _lookup->shapes.emplace(hash, shape);
+    }
+    _table.groups.push_back({block, shape, static_cast<Index>(_table.controls.size()),
+                             static_cast<Index>(_table.runStarts.size())});
+    _table.controls.insert(_table.controls.end(), controls.begin(), controls.end());
+    _table.runStarts.insert(_table.runStarts.end(), starts.begin(), starts.end());
+}
+
+void StencilGroupsBuilder::AddSingle(Index row, std::vector<Index> const& controls,
+                                     std::vector<float> const& weights) {
+    auto& singles = _table.singles;
+    uint64_t const hash = HashOf(weights.data(), weights.size(), weights.size());
+    int const kept = FindKept(_lookup->singles, hash, [&](int other) {
+        size_t const size = static_cast<size_t>(singles.offsets[other + 1] - singles.offsets[other]);
+        return size == controls.size() &&
+               std::memcmp(singles.weights.data() + singles.weightOffsets[other], weights.data(), BytesOf(weights)) == 0;
+    });
+    if (kept < 0) {
+        _lookup->singles.emplace(hash, singles.GetNumRows());
+        singles.weightOffsets.push_back(static_cast<Index>(singles.weights.size()));
+        singles.weights.insert(singles.weights.end(), weights.begin(), weights.end());
+    } else {
+        singles.weightOffsets.push_back(singles.weightOffsets[kept]);
+    }
+    singles.indices.insert(singles.indices.end(), controls.begin(), controls.end());
+    singles.offsets.push_back(static_cast<Index>(singles.indices.size()));
+    singles.rows.push_back(row);
+}
+
+StencilGroups StencilGroupsBuilder::Finish() {
+    constexpr size_t kLimit = static_cast<size_t>(std::numeric_limits<Index>::max());
+    for (size_t size : {_table.controls.size(), _table.runStarts.size(), _table.singles.indices.size(),
+                        _table.singles.weights.size(), _table.groups.size()}) {
+        if (size > kLimit) throw Error(ErrorCode::TooLarge, "a stencil table passes 2^31 entries");
+    }
+    auto& rows = _table.singles.rows;
+    bool isIdentity = static_cast<Index>(rows.size()) == _table.numRows;
+    for (size_t i = 0; isIdentity && i < rows.size(); ++i) isIdentity = rows[i] == static_cast<Index>(i);
+    if (isIdentity) rows.clear();
+    return std::move(_table);
+}
+
+namespace {
+
+/// Rows that use the same control vertices, in the order in which each set of them is first met.
+std::vector<std::vector<Index>> FindRowsWithSameControls(StencilRowsView const& rows) {
+    std::vector<std::vector<Index>> sets;
+    std::unordered_map<uint64_t, size_t> setOfHash;
+    for (Index row = 0; row < rows.numRows; ++row) {
+        uint64_t hash = static_cast<uint64_t>(rows.sizes[row]);  // whatever the order of the controls
+        for (int k = 0; k < rows.sizes[row]; ++k) {
+            hash += Mix(static_cast<uint64_t>(rows.indices[rows.offsets[row] + k]) + 1);
+        }
+        auto const [found, isNew] = setOfHash.try_emplace(hash, sets.size());
+        if (isNew) sets.emplace_back();
+        sets[found->second].push_back(row);
+    }
+    return sets;
+}
+
+}  // namespace
+
+StencilGroups GroupRows(StencilRowsView const& rows) {
+    constexpr size_t kLeastRows = 6;  // below, filling up a panel of 16 costs more than the block saves
+    StencilGroupsBuilder builder(rows.numRows, rows.numControls, rows.numSets);
+    std::vector<int> columnOf(static_cast<size_t>(rows.numControls), -1);
+    std::vector<Index> controls;
+    std::vector<float> weights;
+
+    auto const addSingle = [&](Index row) {
+        auto const begin = rows.offsets[row], end = begin + rows.sizes[row];
+        controls.assign(rows.indices + begin, rows.indices + end);
+        weights.clear();
+        for (int set = 0; set < rows.numSets; ++set) {
+            weights.insert(weights.end(), rows.weights[set] + begin, rows.weights[set] + end);
+        }
+        builder.AddSingle(row, controls, weights);
+    };
+    std::vector<Index> singles;
+    for (auto& members : FindRowsWithSameControls(rows)) {
+        Index const first = members[0];
+        if (members.size() < kLeastRows || rows.sizes[first] > StencilGroups::kMaxColumns || rows.sizes[first] == 0) {
+            singles.insert(singles.end(), members.begin(), members.end());
+            continue;
+        }
+        controls.assign(rows.indices + rows.offsets[first], rows.indices + rows.offsets[first] + rows.sizes[first]);
+        std::sort(controls.begin(), controls.end());
+        controls.erase(std::unique(controls.begin(), controls.end()), controls.end());
+        for (size_t i = 0; i < controls.size(); ++i) columnOf[controls[i]] = static_cast<int>(i);
+        // Two sets of controls may share a hash; what does not belong stays single.
+        auto const belongs = [&](Index row) {
+            Index const* const begin = rows.indices + rows.offsets[row];
+            return std::all_of(begin, begin + rows.sizes[row], [&](Index i) { return columnOf[i] >= 0; });
+        };
+        auto const rest = std::stable_partition(members.begin(), members.end(), belongs);
+        singles.insert(singles.end(), rest, members.end());
+        members.erase(rest, members.end());
+        weights.assign(static_cast<size_t>(rows.numSets) * members.size() * controls.size(), 0.0f);
+        for (int set = 0; set < rows.numSets; ++set) {
+            for (size_t i = 0; i < members.size(); ++i) {
+                float* const to = &weights[(set * members.size() + i) * controls.size()];
+                Index const begin = rows.offsets[members[i]];
+                for (Index k = begin; k < begin + rows.sizes[members[i]]; ++k) {
+                    to[columnOf[rows.indices[k]]] += rows.weights[set][k];
+                }
+            }
+        }
+        builder.AddGroup(builder.AddBlock(static_cast<int>(members.size()), static_cast<int>(controls.size()), weights),
+                         members, controls);
+        for (Index control : controls) columnOf[control] = -1;
+    }
+    std::sort(singles.begin(), singles.end());
+    for (Index row : singles) addSingle(row);
+    return builder.Finish();
+}
+
+}  // namespace limn::far_ext
