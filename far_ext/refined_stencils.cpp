@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 #include <opensubdiv/far/primvarRefiner.h>
+#include <opensubdiv/far/stencilTableFactory.h>
 #include <opensubdiv/far/topologyDescriptor.h>
 #include <opensubdiv/far/topologyRefinerFactory.h>
 
@@ -88,6 +89,48 @@ StencilGroups RecordOneLevel(Far::TopologyRefiner const& refiner, RefinedStencil
         builder.AddSingle(row, indices, weights);
     }
     return builder.Finish();
+}
+
+// -------- face-varying topology that a face's ring does not determine
+
+/// True if the values round a vertex come in more pieces than there are values: OpenSubdiv's rule for
+/// them then depends on where it starts to count the faces.
+bool HasValueInSeveralPieces(Level const& level, Index vertex, int channel) {
+    auto const faces = level.GetVertexFaces(vertex);
+    auto const corners = level.GetVertexFaceLocalIndices(vertex);
+    auto const valueAt = [&](int i, int step) {
+        auto const values = level.GetFaceFVarValues(faces[i], channel);
+        return values[(corners[i] + step + values.size()) % values.size()];
+    };
+    std::vector<Index> values;
+    int numPieces = level.IsVertexBoundary(vertex) ? 1 : 0;
+    for (int i = 0; i < faces.size(); ++i) {
+        values.push_back(valueAt(i, 0));
+        int const next = (i + 1) % faces.size();
+        if (next == 0 && level.IsVertexBoundary(vertex)) break;
+        numPieces += valueAt(i, 0) != valueAt(next, 0) || valueAt(i, -1) != valueAt(next, 1);
+    }
+    std::sort(values.begin(), values.end());
+    auto const numValues = std::unique(values.begin(), values.end()) - values.begin();
+    return numPieces > std::max<std::ptrdiff_t>(numValues, 1);
+}
+
+bool IsSetByRings(Level const& level, int channel) {
+    for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
+        if (level.IsVertexNonManifold(vertex) || HasValueInSeveralPieces(level, vertex, channel)) return false;
+    }
+    return true;
+}
+
+/// Far's own table, grouped afterwards.
+StencilGroups GroupFarTable(Far::TopologyRefiner const& refiner, int channel) {
+    Far::StencilTableFactory::Options options;
+    options.interpolationMode = Far::StencilTableFactory::INTERPOLATE_FACE_VARYING;
+    options.generateIntermediateLevels = false;
+    options.generateOffsets = true;
+    options.fvarChannel = static_cast<unsigned>(channel);
+    std::unique_ptr<Far::StencilTable const> const table(Far::StencilTableFactory::Create(refiner, options));
+    return GroupRows(ViewStencils(*table));
 }
 
 // -------- more levels: by face
@@ -432,7 +475,11 @@ StencilGroups BuildRefinedStencils(Far::TopologyRefiner const& refiner, RefinedS
         throw Error(ErrorCode::BadOption, fmt::format("there is no face-varying channel {}; the topology has {}",
                                                       options.fvarChannel, numChannels));
     }
-    return refiner.GetMaxLevel() == 1 ? RecordOneLevel(refiner, options) : FaceWalk(refiner, options).Build();
+    if (refiner.GetMaxLevel() == 1) return RecordOneLevel(refiner, options);
+    if (options.mode == Mode::FaceVarying && !IsSetByRings(refiner.GetLevel(0), options.fvarChannel)) {
+        return GroupFarTable(refiner, options.fvarChannel);
+    }
+    return FaceWalk(refiner, options).Build();
 }
 
 }  // namespace limn::far_ext

@@ -97,6 +97,34 @@ TEST(RefinedStencils, FaceVaryingWeightsAreFarsOnEveryCageAndRule) {
     }
 }
 
+/// A chart cut from its boundary to its middle: the values end in one that meets itself there.
+TEST(RefinedStencils, FaceVaryingWeightsAreFarsWhereACutEnds) {
+    constexpr int kSize = 6, kCut = 3;
+    std::vector<double> positions;
+    std::vector<std::vector<Index>> faces;
+    FVarChannel channel{(kSize + 1) * (kSize + 1) + kCut, {}};
+    for (int j = 0; j <= kSize; ++j) {
+        for (int i = 0; i <= kSize; ++i) positions.insert(positions.end(), {1.0 * i, 1.0 * j, 0.0});
+    }
+    for (int j = 0; j < kSize; ++j) {
+        for (int i = 0; i < kSize; ++i) {
+            int const corner = j * (kSize + 1) + i;
+            faces.push_back({corner, corner + 1, corner + kSize + 2, corner + kSize + 1});
+            for (int vertex : faces.back()) {
+                int const x = vertex % (kSize + 1), y = vertex / (kSize + 1);
+                bool const isOtherSide = y == kCut && x < kCut && j >= kCut;
+                channel.valueIndices.push_back(isOtherSide ? (kSize + 1) * (kSize + 1) + x : vertex);
+            }
+        }
+    }
+    auto scene = test::MakeScene(positions, faces);
+    scene.cage.fvarChannels.push_back(channel);
+    for (int rule = 0; rule <= Sdc::Options::FVAR_LINEAR_ALL; ++rule) {
+        scene.cage.options.SetFVarLinearInterpolation(static_cast<Sdc::Options::FVarLinearInterpolation>(rule));
+        ExpectFarsWeights(*Refine(scene.cage, 3), Mode::FaceVarying, fmt::format("rule {}", rule));
+    }
+}
+
 TEST(RefinedStencils, BoundaryRulesAreFars) {
     auto scene = test::LoadData("opensubdiv_shapes/catmark_edgeonly.obj");
     for (auto rule : {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
