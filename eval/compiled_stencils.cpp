@@ -1,7 +1,6 @@
 #include "eval/compiled_stencils.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -50,37 +49,41 @@ CompiledStencils CompiledStencils::Compile(Far::LimitStencilTable const& table, 
 CompiledStencils::Slices CompiledStencils::MakeSlices(far_ext::StencilGroups const& groups) {
     constexpr Index W = StencilSliceArrays::kLanes;
     constexpr Index kWindow = 256;  // rows sorted together: far enough for equal sizes, near enough for the cache
+    struct Row {
+        Index row;
+        int size;
+        Index firstIndex, firstWeight;
+    };
     auto const& singles = groups.singles;
-    auto const sizeOf = [&](Index i) { return singles.offsets[i + 1] - singles.offsets[i]; };
-    Index const numRows = singles.GetNumRows();
-    std::vector<Index> order(static_cast<size_t>(numRows));
-    std::iota(order.begin(), order.end(), 0);
+    std::vector<Row> rows;
+    for (auto const& run : singles.runs) {
+        for (int i = 0; i < run.numRows; ++i) {
+            rows.push_back({run.firstRow + i, run.size, run.firstIndex + i * run.size, run.firstWeight});
+        }
+    }
+    Index const numRows = static_cast<Index>(rows.size());
     for (Index begin = 0; begin < numRows; begin += kWindow) {
-        std::stable_sort(order.begin() + begin, order.begin() + std::min(begin + kWindow, numRows),
-                         [&](Index a, Index b) { return sizeOf(a) > sizeOf(b); });
+        std::stable_sort(rows.begin() + begin, rows.begin() + std::min(begin + kWindow, numRows),
+                         [](Row const& a, Row const& b) { return a.size > b.size; });
     }
     Slices slices;
     for (Index begin = 0; begin < numRows; begin += W) {
         Index const numLanes = std::min(W, numRows - begin);
-        Index longest = 0;
-        for (Index l = 0; l < numLanes; ++l) longest = std::max(longest, sizeOf(order[begin + l]));
-        for (Index k = 0; k < longest; ++k) {
+        int longest = 0;
+        for (Index l = 0; l < numLanes; ++l) longest = std::max(longest, rows[begin + l].size);
+        for (int k = 0; k < longest; ++k) {
             for (Index l = 0; l < W; ++l) {
                 // Filled up with weight 0 at a point the row uses anyway.
-                Index const row = order[begin + std::min(l, numLanes - 1)], size = sizeOf(row);
-                bool const isEntry = l < numLanes && k < size;
-                Index const entry = singles.offsets[row] + std::min(k, std::max(size, 1) - 1);
-                slices.indices.push_back(size > 0 ? singles.indices[entry] : 0);
+                Row const& row = rows[begin + std::min(l, numLanes - 1)];
+                bool const isEntry = l < numLanes && k < row.size;
+                slices.indices.push_back(row.size > 0 ? singles.indices[row.firstIndex + std::min(k, row.size - 1)] : 0);
                 for (int set = 0; set < groups.numSets; ++set) {
-                    Index const weight = singles.weightOffsets[row] + set * size + k;
+                    Index const weight = row.firstWeight + set * row.size + k;
                     slices.weights[set].push_back(isEntry ? singles.weights[weight] : 0.0f);
                 }
             }
         }
-        for (Index l = 0; l < W; ++l) {
-            Index const row = l < numLanes ? order[begin + l] : -1;
-            slices.rows.push_back(row < 0 || singles.rows.empty() ? row : singles.rows[row]);
-        }
+        for (Index l = 0; l < W; ++l) slices.rows.push_back(l < numLanes ? rows[begin + l].row : -1);
         slices.offsets.push_back(slices.indices.size() / W);
     }
     return slices;
@@ -112,17 +115,12 @@ void CompiledStencils::EvaluateGroups(StencilJob const& job) const {
 
 void CompiledStencils::EvaluateSingles(StencilJob const& job) const {
     auto const& singles = _groups.singles;
-    StencilRowArrays arrays{};
-    arrays.offsets = singles.offsets.data();
-    arrays.weightOffsets = singles.weightOffsets.data();
-    arrays.rows = singles.rows.empty() ? nullptr : singles.rows.data();
-    arrays.indices = singles.indices.data();
-    arrays.isPacked = true;
-    for (int set = 0; set < _groups.numSets; ++set) arrays.weights[set] = singles.weights.data();
-    bool const isInOrder = !arrays.rows && singles.GetNumRows() > 0;  // then the table is nothing but these
-    Index const begin = isInOrder ? job.begin : 0, end = isInOrder ? job.end : singles.GetNumRows();
-    ForParts(end - begin, kRowsPerTask,
-             [&](Index first, Index last) { EvaluateStencilRows(job, arrays, begin + first, begin + last); });
+    Index const numRuns = static_cast<Index>(singles.runs.size());
+    if (numRuns == 0) return;
+    StencilRunArrays const arrays{singles.runs.data(), singles.indices.data(), singles.weights.data()};
+    Index const rowsPerRun = std::max(1, _groups.numRows / numRuns);
+    ForParts(numRuns, std::max(1, kRowsPerTask / rowsPerRun),
+             [&](Index first, Index last) { EvaluateStencilRuns(job, arrays, first, last); });
 }
 
 void CompiledStencils::EvaluateSlices(StencilJob const& job) const {

@@ -69,7 +69,7 @@ bool SimdEvaluator::Apply(float const* source, BufferDescriptor const& sourceDes
                           far_ext::StencilRowsView const& rows, int start, int end) {
     if (end <= start) return true;
     StencilJob const job = MakeJob(source, sourceDesc, targets, rows.numSets, start, end);
-    StencilRowArrays arrays{rows.sizes, rows.offsets, rows.offsets, nullptr, rows.indices, {}, false};
+    StencilRowArrays arrays{rows.sizes, rows.offsets, rows.indices, {}};
     if (!rows.sizes || !rows.offsets || !rows.indices) Refuse("a stencil table lacks sizes, offsets or indices");
     for (int set = 0; set < job.numSets; ++set) {
         arrays.weights[set] = rows.weights[static_cast<size_t>(set)];

@@ -9,6 +9,7 @@ namespace limn::eval {
 #define LIMN_DECLARE_KERNEL(name)                                                                   \
     namespace name {                                                                                \
     void EvaluateStencilRows(StencilJob const&, StencilRowArrays const&, Index, Index);             \
+    void EvaluateStencilRuns(StencilJob const&, StencilRunArrays const&, Index, Index);             \
     void EvaluateStencilGroups(StencilJob const&, StencilGroupArrays const&, Index, Index);         \
     void EvaluateStencilSlices(StencilJob const&, StencilSliceArrays const&, Index, Index);         \
     }
@@ -20,6 +21,11 @@ LIMN_DECLARE_KERNEL(avx512)
 void EvaluateStencilRows(StencilJob const& job, StencilRowArrays const& rows, Index first, Index last) {
     constexpr std::array kKernels{sse2::EvaluateStencilRows, avx2::EvaluateStencilRows, avx512::EvaluateStencilRows};
     kKernels[static_cast<size_t>(GetInstructionSet())](job, rows, first, last);
+}
+
+void EvaluateStencilRuns(StencilJob const& job, StencilRunArrays const& runs, Index first, Index last) {
+    constexpr std::array kKernels{sse2::EvaluateStencilRuns, avx2::EvaluateStencilRuns, avx512::EvaluateStencilRuns};
+    kKernels[static_cast<size_t>(GetInstructionSet())](job, runs, first, last);
 }
 
 void EvaluateStencilGroups(StencilJob const& job, StencilGroupArrays const& groups, Index first, Index last) {

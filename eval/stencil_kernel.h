@@ -25,15 +25,19 @@ struct StencilJob {
     Index begin, end;
 };
 
-/// Rows on their own, of a compiled table (StencilGroups::Singles) or of Far's arrays.
+/// Rows as Far keeps them, see far_ext::StencilRowsView.
 struct StencilRowArrays {
-    int const* sizes;            ///< null: row i ends where row i + 1 starts
-    Index const* offsets;        ///< of the indices
-    Index const* weightOffsets;  ///< of the weights
-    Index const* rows;           ///< where row i goes; null: to i
+    int const* sizes;
+    Index const* offsets;
     Index const* indices;
     float const* weights[far_ext::kMaxWeightSets];
-    bool isPacked;  ///< set s of a row lies s * its size behind the first
+};
+
+/// Single rows of a compiled table, see far_ext::StencilGroups::Run.
+struct StencilRunArrays {
+    far_ext::StencilGroups::Run const* runs;
+    Index const* indices;
+    float const* weights;
 };
 
 /// Grouped rows as plain pointers, see StencilGroups.
@@ -57,13 +61,14 @@ struct StencilSliceArrays {
     float const* weights[far_ext::kMaxWeightSets];
 };
 
-/// Evaluate singles, groups and slices first..last-1. The same bits on every CPU and whichever ranges
+/// Evaluate rows, runs, groups and slices first..last-1. The same bits on every CPU and whichever ranges
 /// the work is cut into: one source, compiled per instruction set without contraction, every sum in a
 /// fixed order. That order is: grouped rows, column after column; sliced rows, entry after entry;
-/// single rows, the even entries and the odd ones, then both.
+/// rows and runs, the even entries and the odd ones, then both.
 ///
 /// \pre all indices are valid; no target overlaps the source or another target
 void EvaluateStencilRows(StencilJob const& job, StencilRowArrays const& rows, Index first, Index last);
+void EvaluateStencilRuns(StencilJob const& job, StencilRunArrays const& runs, Index first, Index last);
 void EvaluateStencilGroups(StencilJob const& job, StencilGroupArrays const& groups, Index first, Index last);
 void EvaluateStencilSlices(StencilJob const& job, StencilSliceArrays const& slices, Index first, Index last);
 

@@ -40,14 +40,14 @@ size_t BytesOf(std::vector<Entry> const& entries) {
 
 size_t StencilGroups::GetMemory() const {
     return BytesOf(blocks) + BytesOf(weights) + BytesOf(shapes) + BytesOf(runLengths) + BytesOf(groups) +
-           BytesOf(controls) + BytesOf(runStarts) + BytesOf(singles.rows) + BytesOf(singles.offsets) +
-           BytesOf(singles.indices) + BytesOf(singles.weightOffsets) + BytesOf(singles.weights);
+           BytesOf(controls) + BytesOf(runStarts) + BytesOf(singles.runs) + BytesOf(singles.indices) +
+           BytesOf(singles.weights);
 }
 
 StencilRows StencilGroups::Expand() const {
     struct Place {
-        int group = -1;  // -1: single
-        int row = 0;     // within the group, or of the singles
+        int group = -1, run = -1;
+        int row = 0;  // within the group or run
     };
     std::vector<Place> places(static_cast<size_t>(numRows));
     for (size_t g = 0; g < groups.size(); ++g) {
@@ -56,24 +56,28 @@ StencilRows StencilGroups::Expand() const {
         for (int run = 0; run < shape.numRuns; ++run) {
             Index const start = runStarts[groups[g].firstStart + run];
             for (int i = 0; i < runLengths[shape.firstRun + run]; ++i) {
-                places[start + i] = {static_cast<int>(g), inGroup++};
+                places[start + i] = {static_cast<int>(g), -1, inGroup++};
             }
         }
     }
-    for (Index i = 0; i < singles.GetNumRows(); ++i) places[singles.rows.empty() ? i : singles.rows[i]].row = i;
+    for (size_t r = 0; r < singles.runs.size(); ++r) {
+        for (int i = 0; i < singles.runs[r].numRows; ++i) {
+            places[singles.runs[r].firstRow + i] = {-1, static_cast<int>(r), i};
+        }
+    }
 
     StencilRows rows(numControls, numSets);
     float entry[kMaxWeightSets];
     for (Place const& place : places) {
-        if (place.group < 0) {
-            Index const begin = singles.offsets[place.row], size = singles.offsets[place.row + 1] - begin;
-            for (Index k = 0; k < size; ++k) {
+        if (place.run >= 0) {
+            Run const& run = singles.runs[place.run];
+            for (int k = 0; k < run.size; ++k) {
                 for (int set = 0; set < numSets; ++set) {
-                    entry[set] = singles.weights[singles.weightOffsets[place.row] + set * size + k];
+                    entry[set] = singles.weights[run.firstWeight + set * run.size + k];
                 }
-                rows.AddEntry(singles.indices[begin + k], entry);
+                rows.AddEntry(singles.indices[run.firstIndex + place.row * run.size + k], entry);
             }
-        } else {
+        } else if (place.group >= 0) {
             Group const& group = groups[place.group];
             Block const& block = blocks[group.block];
             int const panel = place.row / kRowsPerPanel, lane = place.row % kRowsPerPanel;
@@ -182,22 +186,48 @@ void StencilGroupsBuilder::AddGroup(int block, std::vector<Index> const& rows, s
 void StencilGroupsBuilder::AddSingle(Index row, std::vector<Index> const& controls,
                                      std::vector<float> const& weights) {
     auto& singles = _table.singles;
+    int const size = static_cast<int>(controls.size());
+    Single single{row, size, static_cast<Index>(singles.indices.size()), static_cast<Index>(singles.weights.size())};
     uint64_t const hash = HashOf(weights.data(), weights.size(), weights.size());
     int const kept = FindKept(_lookup->singles, hash, [&](int other) {
-        size_t const size = static_cast<size_t>(singles.offsets[other + 1] - singles.offsets[other]);
-        return size == controls.size() &&
-               std::memcmp(singles.weights.data() + singles.weightOffsets[other], weights.data(), BytesOf(weights)) == 0;
+        return _singles[other].size == size &&
+               std::memcmp(singles.weights.data() + _singles[other].firstWeight, weights.data(), BytesOf(weights)) == 0;
     });
     if (kept < 0) {
-        _lookup->singles.emplace(hash, singles.GetNumRows());
-        singles.weightOffsets.push_back(static_cast<Index>(singles.weights.size()));
+        _lookup->singles.emplace(hash, static_cast<int>(_singles.size()));
         singles.weights.insert(singles.weights.end(), weights.begin(), weights.end());
     } else {
-        singles.weightOffsets.push_back(singles.weightOffsets[kept]);
+        single.firstWeight = _singles[kept].firstWeight;
     }
     singles.indices.insert(singles.indices.end(), controls.begin(), controls.end());
-    singles.offsets.push_back(static_cast<Index>(singles.indices.size()));
-    singles.rows.push_back(row);
+    _singles.push_back(single);
+}
+
+/// Orders the single rows and joins those that follow each other and have equal weights.
+void StencilGroupsBuilder::MakeRuns() {
+    auto const isBefore = [](Single const& a, Single const& b) { return a.row < b.row; };
+    if (!std::is_sorted(_singles.begin(), _singles.end(), isBefore)) {
+        std::sort(_singles.begin(), _singles.end(), isBefore);
+        std::vector<Index> indices;
+        indices.reserve(_table.singles.indices.size());
+        for (Single& single : _singles) {
+            auto const from = _table.singles.indices.begin() + single.firstIndex;
+            single.firstIndex = static_cast<Index>(indices.size());
+            indices.insert(indices.end(), from, from + single.size);
+        }
+        _table.singles.indices = std::move(indices);
+    }
+    auto& runs = _table.singles.runs;
+    for (Single const& single : _singles) {
+        bool const continues = !runs.empty() && runs.back().numRows < StencilGroups::kMostRowsPerRun &&
+                               runs.back().firstRow + runs.back().numRows == single.row &&
+                               runs.back().size == single.size && runs.back().firstWeight == single.firstWeight;
+        if (continues) {
+            ++runs.back().numRows;
+        } else {
+            runs.push_back({single.row, 1, single.size, single.firstIndex, single.firstWeight});
+        }
+    }
 }
 
 StencilGroups StencilGroupsBuilder::Finish() {
@@ -206,28 +236,33 @@ StencilGroups StencilGroupsBuilder::Finish() {
                         _table.singles.weights.size(), _table.groups.size()}) {
         if (size > kLimit) throw Error(ErrorCode::TooLarge, "a stencil table passes 2^31 entries");
     }
-    auto& rows = _table.singles.rows;
-    bool isIdentity = static_cast<Index>(rows.size()) == _table.numRows;
-    for (size_t i = 0; isIdentity && i < rows.size(); ++i) isIdentity = rows[i] == static_cast<Index>(i);
-    if (isIdentity) rows.clear();
+    MakeRuns();
     return std::move(_table);
 }
 
 namespace {
 
-/// Rows that use the same control vertices, in the order in which each set of them is first met.
-std::vector<std::vector<Index>> FindRowsWithSameControls(StencilRowsView const& rows) {
-    std::vector<std::vector<Index>> sets;
-    std::unordered_map<uint64_t, size_t> setOfHash;
+/// Rows that use the same control vertices (or, next to never, whose controls share a hash), ordered by
+/// the first of each set.
+std::vector<std::vector<Index>> FindRowsWithSameControls(StencilRowsView const& rows, size_t leastRows,
+                                                         std::vector<Index>& others) {
+    std::vector<std::pair<uint64_t, Index>> keys(static_cast<size_t>(rows.numRows));
     for (Index row = 0; row < rows.numRows; ++row) {
         uint64_t hash = static_cast<uint64_t>(rows.sizes[row]);  // whatever the order of the controls
         for (int k = 0; k < rows.sizes[row]; ++k) {
             hash += Mix(static_cast<uint64_t>(rows.indices[rows.offsets[row] + k]) + 1);
         }
-        auto const [found, isNew] = setOfHash.try_emplace(hash, sets.size());
-        if (isNew) sets.emplace_back();
-        sets[found->second].push_back(row);
+        keys[row] = {hash, row};
     }
+    std::sort(keys.begin(), keys.end());
+    std::vector<std::vector<Index>> sets;
+    for (auto first = keys.begin(); first != keys.end();) {
+        auto const last = std::find_if(first, keys.end(), [&](auto const& key) { return key.first != first->first; });
+        bool const isSet = last - first >= static_cast<std::ptrdiff_t>(leastRows);
+        if (isSet) sets.emplace_back();
+        for (; first != last; ++first) (isSet ? sets.back() : others).push_back(first->second);
+    }
+    std::sort(sets.begin(), sets.end(), [](auto const& a, auto const& b) { return a[0] < b[0]; });
     return sets;
 }
 
@@ -250,9 +285,9 @@ StencilGroups GroupRows(StencilRowsView const& rows) {
         builder.AddSingle(row, controls, weights);
     };
     std::vector<Index> singles;
-    for (auto& members : FindRowsWithSameControls(rows)) {
+    for (auto& members : FindRowsWithSameControls(rows, kLeastRows, singles)) {
         Index const first = members[0];
-        if (members.size() < kLeastRows || rows.sizes[first] > StencilGroups::kMaxColumns || rows.sizes[first] == 0) {
+        if (rows.sizes[first] > StencilGroups::kMaxColumns || rows.sizes[first] == 0) {
             singles.insert(singles.end(), members.begin(), members.end());
             continue;
         }
@@ -282,7 +317,7 @@ StencilGroups GroupRows(StencilRowsView const& rows) {
                          members, controls);
         for (Index control : controls) columnOf[control] = -1;
     }
-    std::sort(singles.begin(), singles.end());
+    std::sort(singles.begin(), singles.end());  // so that equal weights follow each other
     for (Index row : singles) addSingle(row);
     return builder.Finish();
 }

@@ -40,16 +40,20 @@ struct StencilGroups {
         Index firstStart;    ///< into runStarts: where in the table each run starts
     };
 
-    /// Rows on their own: row rows[i] (row i if that is empty) has controls indices[offsets[i] ..
-    /// offsets[i+1]) and, n of them, weights[weightOffsets[i] + set * n + k].
-    struct Singles {
-        std::vector<Index> rows;
-        std::vector<Index> offsets{0};
-        std::vector<Index> indices;
-        std::vector<Index> weightOffsets;
-        std::vector<float> weights;
+    /// Rows on their own that follow each other and have equal weights: row firstRow + i has the controls
+    /// indices[firstIndex + i * size + k] and, in set s, the weights weights[firstWeight + s * size + k].
+    struct Run {
+        Index firstRow;
+        int numRows;  ///< at most kMostRowsPerRun, so that runs can be shared out
+        int size;
+        Index firstIndex, firstWeight;
+    };
+    static constexpr int kMostRowsPerRun = 1024;
 
-        Index GetNumRows() const { return static_cast<Index>(weightOffsets.size()); }
+    struct Singles {
+        std::vector<Run> runs;  ///< by row
+        std::vector<Index> indices;
+        std::vector<float> weights;
     };
 
     Index numRows = 0, numControls = 0;
@@ -82,7 +86,7 @@ public:
     /// Adds a group: `rows` and `controls` in the order of the block's rows and columns.
     void AddGroup(int block, std::vector<Index> const& rows, std::vector<Index> const& controls);
 
-    /// Adds a row on its own; `weights` lie as [set][control].
+    /// Adds a row on its own, in any order; `weights` lie as [set][control].
     void AddSingle(Index row, std::vector<Index> const& controls, std::vector<float> const& weights);
 
     /// \throws Error  TooLarge: an array passes 2^31 entries
@@ -90,7 +94,16 @@ public:
 
 private:
     struct Lookup;
+    struct Single {
+        Index row;
+        int size;
+        Index firstIndex, firstWeight;
+    };
+
+    void MakeRuns();
+
     StencilGroups _table;
+    std::vector<Single> _singles;
     std::unique_ptr<Lookup> _lookup;
 };
 
