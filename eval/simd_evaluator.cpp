@@ -1,7 +1,5 @@
 #include "eval/simd_evaluator.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -17,29 +15,10 @@ namespace {
 
 [[noreturn]] void Refuse(std::string const& message) { throw Error(ErrorCode::BadOption, message); }
 
-StencilJob MakeJob(float const* source, BufferDescriptor const& sourceDesc,
-                   std::initializer_list<SimdEvaluator::Target> targets, int numSets, int start, int end) {
-    auto const check = [&](char const* what, void const* values, BufferDescriptor const& desc) {
-        if (!values) Refuse(fmt::format("the {} of a stencil evaluation is a null pointer", what));
-        if (!desc.IsValid()) {
-            Refuse(fmt::format("the {} of a stencil evaluation has length {}, stride {} and offset {}; a stride holds "
-                               "offset and length, and a length is at least 1",
-                               what, desc.length, desc.stride, desc.offset));
-        }
-        if (desc.length != sourceDesc.length) {
-            Refuse(fmt::format("the {} of a stencil evaluation has length {}, its source {}", what, desc.length,
-                               sourceDesc.length));
-        }
-    };
-    check("source", source, sourceDesc);
-    if (start < 0) Refuse(fmt::format("a stencil evaluation starts at {}; stencils are counted from 0", start));
-    if (targets.size() > static_cast<size_t>(numSets)) {
-        Refuse(fmt::format("a stencil evaluation asks for {} results (values, then derivatives); its table has {}",
-                           targets.size(), numSets));
-    }
+StencilJob MakeJob(float const* source, BufferDescriptor const& sourceDesc, SimdEvaluator::Targets const& targets,
+                   int start, int end) {
     StencilJob job{{source + sourceDesc.offset, sourceDesc.stride}, {}, 0, sourceDesc.length, start, end};
     for (auto const& target : targets) {
-        check("destination", target.values, target.desc);
         job.targets[job.numSets++] = {target.values + target.desc.offset, target.desc.stride};
     }
     return job;
@@ -55,26 +34,53 @@ far_ext::StencilRowsView MakeView(int const* sizes, int const* offsets, int cons
 
 }  // namespace
 
-bool SimdEvaluator::Apply(float const* source, BufferDescriptor const& sourceDesc, std::initializer_list<Target> targets,
+void SimdEvaluator::Check(float const* source, BufferDescriptor const& sourceDesc, Targets const& targets, int numSets,
+                          int numRows, int start, int end) {
+    auto const check = [&](char const* what, void const* values, BufferDescriptor const& desc) {
+        if (!values) Refuse(fmt::format("the {} of a stencil evaluation is a null pointer", what));
+        if (!desc.IsValid() || desc.offset < 0) {
+            Refuse(fmt::format("the {} of a stencil evaluation has length {}, stride {} and offset {}; a length is at "
+                               "least 1, an offset not negative, and a stride holds both",
+                               what, desc.length, desc.stride, desc.offset));
+        }
+        if (desc.length != sourceDesc.length) {
+            Refuse(fmt::format("the {} of a stencil evaluation has length {}, its source {}", what, desc.length,
+                               sourceDesc.length));
+        }
+    };
+    check("source", source, sourceDesc);
+    for (auto const& target : targets) check("destination", target.values, target.desc);
+    if (targets.size() != 1 && targets.size() != 3 && targets.size() != far_ext::kMaxWeightSets) {
+        Refuse(fmt::format("a stencil evaluation has 1, 3 or 6 destinations, not {}", targets.size()));
+    }
+    if (targets.size() > static_cast<size_t>(numSets)) {
+        Refuse(fmt::format("a stencil evaluation asks for {} results (values, then derivatives); its table has {}",
+                           targets.size(), numSets));
+    }
+    if (start < 0 || end > numRows) {
+        Refuse(fmt::format("a stencil evaluation covers stencils {} to {}; there are 0 to {}", start, end - 1, numRows - 1));
+    }
+}
+
+bool SimdEvaluator::Apply(float const* source, BufferDescriptor const& sourceDesc, Targets const& targets,
                           CompiledStencils const& table, int start, int end) {
     if (end <= start) return true;
-    if (end > table.GetNumStencils()) {
-        Refuse(fmt::format("a stencil evaluation ends at {}; its table has {} stencils", end, table.GetNumStencils()));
-    }
-    table.Evaluate(MakeJob(source, sourceDesc, targets, table.GetNumSets(), start, end));
+    Check(source, sourceDesc, targets, table.GetNumSets(), table.GetNumStencils(), start, end);
+    table.Evaluate(MakeJob(source, sourceDesc, targets, start, end));
     return true;
 }
 
-bool SimdEvaluator::Apply(float const* source, BufferDescriptor const& sourceDesc, std::initializer_list<Target> targets,
+bool SimdEvaluator::Apply(float const* source, BufferDescriptor const& sourceDesc, Targets const& targets,
                           far_ext::StencilRowsView const& rows, int start, int end) {
     if (end <= start) return true;
-    StencilJob const job = MakeJob(source, sourceDesc, targets, rows.numSets, start, end);
-    StencilRowArrays arrays{rows.sizes, rows.offsets, rows.indices, {}};
+    Check(source, sourceDesc, targets, rows.numSets, rows.numRows, start, end);
     if (!rows.sizes || !rows.offsets || !rows.indices) Refuse("a stencil table lacks sizes, offsets or indices");
-    for (int set = 0; set < job.numSets; ++set) {
-        arrays.weights[set] = rows.weights[static_cast<size_t>(set)];
+    StencilRowArrays arrays{rows.sizes, rows.offsets, rows.indices, {}};
+    for (size_t set = 0; set < targets.size(); ++set) {
+        arrays.weights[set] = rows.weights[set];
         if (!arrays.weights[set]) Refuse("a stencil table lacks weights");
     }
+    StencilJob const job = MakeJob(source, sourceDesc, targets, start, end);
     constexpr size_t kRowsPerTask = 4096;
     tbb::parallel_for(tbb::blocked_range<Index>(start, end, kRowsPerTask),
                       [&](auto const& range) { EvaluateStencilRows(job, arrays, range.begin(), range.end()); });

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <initializer_list>
+#include <vector>
 
 #include <opensubdiv/osd/bufferDescriptor.h>
 
@@ -29,6 +29,14 @@ namespace Osd = OpenSubdiv::Osd;
 /// Usable from C++17.
 class SimdEvaluator {
 public:
+    /// Where the results of one weight set go.
+    struct Target {
+        float* values;
+        Osd::BufferDescriptor desc;
+    };
+
+    using Targets = std::vector<Target>;
+
     /// Values.
     template <class SourceBuffer, class TargetBuffer, class Table>
     static bool EvalStencils(SourceBuffer* source, Osd::BufferDescriptor const& sourceDesc, TargetBuffer* target,
@@ -108,27 +116,25 @@ public:
                              float* dvv, Osd::BufferDescriptor const& dvvDesc, CompiledStencils const& table, int start,
                              int end);
 
-    /// Where the results of one weight set go.
-    struct Target {
-        float* values;
-        Osd::BufferDescriptor desc;
-    };
-
     /// What all overloads come down to: 1, 3 or 6 targets, in the order of far_ext::WeightSet.
-    static bool Apply(float const* source, Osd::BufferDescriptor const& sourceDesc, std::initializer_list<Target> targets,
+    static bool Apply(float const* source, Osd::BufferDescriptor const& sourceDesc, Targets const& targets,
                       CompiledStencils const& table, int start, int end);
-    static bool Apply(float const* source, Osd::BufferDescriptor const& sourceDesc, std::initializer_list<Target> targets,
+    static bool Apply(float const* source, Osd::BufferDescriptor const& sourceDesc, Targets const& targets,
                       far_ext::StencilRowsView const& rows, int start, int end);
 
+    /// The checks of all overloads, for a table of numSets weight sets and numRows rows.
+    static void Check(float const* source, Osd::BufferDescriptor const& sourceDesc, Targets const& targets, int numSets,
+                      int numRows, int start, int end);
+
 private:
-    static bool Apply(float const* source, Osd::BufferDescriptor const& sourceDesc, std::initializer_list<Target> targets,
+    static bool Apply(float const* source, Osd::BufferDescriptor const& sourceDesc, Targets const& targets,
                       CompiledStencils const& table) {
         return Apply(source, sourceDesc, targets, table, 0, table.GetNumStencils());
     }
 
     /// Any table with Far's accessors; those of derivatives are only asked for where they are needed.
     template <class Table>
-    static bool Apply(float const* source, Osd::BufferDescriptor const& sourceDesc, std::initializer_list<Target> targets,
+    static bool Apply(float const* source, Osd::BufferDescriptor const& sourceDesc, Targets const& targets,
                       Table const& table) {
         return Apply(source, sourceDesc, targets, View(table, 0), 0, table.GetNumStencils());
     }
