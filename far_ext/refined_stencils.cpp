@@ -1,18 +1,17 @@
 #include "far_ext/refined_stencils.h"
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <opensubdiv/far/primvarRefiner.h>
 #include <opensubdiv/far/stencilTableFactory.h>
-#include <opensubdiv/far/topologyDescriptor.h>
-#include <opensubdiv/far/topologyRefinerFactory.h>
 
 #include "far_ext/error.h"
-#include "far_ext/ring_subdivision.h"
+#include "far_ext/ring_weights.h"
 
 namespace limn::far_ext {
 
@@ -134,201 +133,6 @@ StencilGroups GroupFarTable(Far::TopologyRefiner const& refiner, int channel) {
 }
 
 // -------- more levels: by face
-
-/// All points of a face with `size` corners that are refined `depth` times, whatever the mesh round
-/// it: which corners of which descendant faces they are, and how they follow from the children's.
-/// Descendants are numbered as OpenSubdiv does, which is how they are numbered in any mesh.
-struct FaceLattice {
-    struct Place {
-        int face, corner;  ///< one of the places where the point is found
-    };
-    struct Child {
-        std::vector<int> pointOfRow;  ///< of this lattice, per point of the child's own lattice
-        int size;                     ///< corners of the child
-    };
-    std::vector<Place> places;                ///< per point
-    std::vector<int> inside;                  ///< points within the face, in OpenSubdiv's order
-    std::vector<std::vector<int>> onEdge;     ///< per edge, without its ends
-    std::vector<int> atCorner;                ///< per corner
-    std::vector<Child> children;
-};
-
-class LatticeCache {
-public:
-    explicit LatticeCache(Sdc::SchemeType scheme) : _scheme(scheme) {}
-
-    FaceLattice const& Get(int size, int depth) {
-        auto& slot = _lattices[{size, depth}];
-        if (!slot) slot = std::make_unique<FaceLattice>(Build(size, depth));
-        return *slot;
-    }
-
-private:
-    FaceLattice Build(int size, int depth) {
-        std::vector<Index> corners(static_cast<size_t>(size));
-        for (int i = 0; i < size; ++i) corners[i] = i;
-        Far::TopologyDescriptor face;
-        face.numVertices = size;
-        face.numFaces = 1;
-        face.numVertsPerFace = &size;
-        face.vertIndicesPerFace = corners.data();
-        using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-        std::unique_ptr<Far::TopologyRefiner> const refiner(Factory::Create(face, Factory::Options(_scheme)));
-        refiner->RefineUniform(Far::TopologyRefiner::UniformOptions(depth));
-
-        FaceLattice lattice;
-        Level const fine = refiner->GetLevel(depth);
-        lattice.places.assign(static_cast<size_t>(fine.GetNumVertices()), {-1, -1});
-        for (Index f = 0; f < fine.GetNumFaces(); ++f) {
-            auto const vertices = fine.GetFaceVertices(f);
-            for (int i = 0; i < vertices.size(); ++i) {
-                if (lattice.places[vertices[i]].face < 0) lattice.places[vertices[i]] = {f, i};
-            }
-        }
-        SortByBoundary(*refiner, depth, lattice);
-        if (depth > 0) AddChildren(*refiner, depth, lattice);
-        return lattice;
-    }
-
-    /// Follows the face's corners and edges down to the last level.
-    static void SortByBoundary(Far::TopologyRefiner const& refiner, int depth, FaceLattice& lattice) {
-        Level const base = refiner.GetLevel(0);
-        std::vector<char> isInside(lattice.places.size(), 1);
-        auto const descend = [&](int level, Index vertex) {
-            for (; level < depth; ++level) vertex = refiner.GetLevel(level).GetVertexChildVertex(vertex);
-            isInside[vertex] = 0;
-            return vertex;
-        };
-        for (Index corner : base.GetFaceVertices(0)) lattice.atCorner.push_back(descend(0, corner));
-        for (Index edge : base.GetFaceEdges(0)) {
-            std::vector<int> points;
-            std::vector<Index> pieces{edge};
-            for (int level = 0; level < depth; ++level) {
-                std::vector<Index> halves;
-                for (Index piece : pieces) {
-                    points.push_back(descend(level + 1, refiner.GetLevel(level).GetEdgeChildVertex(piece)));
-                    for (Index half : refiner.GetLevel(level).GetEdgeChildEdges(piece)) halves.push_back(half);
-                }
-                pieces = std::move(halves);
-            }
-            std::sort(points.begin(), points.end());
-            lattice.onEdge.push_back(std::move(points));
-        }
-        for (size_t point = 0; point < isInside.size(); ++point) {
-            if (isInside[point]) lattice.inside.push_back(static_cast<int>(point));
-        }
-    }
-
-    void AddChildren(Far::TopologyRefiner const& refiner, int depth, FaceLattice& lattice) {
-        Level const fine = refiner.GetLevel(depth);
-        auto const children = refiner.GetLevel(0).GetFaceChildFaces(0);
-        int const perChild = fine.GetNumFaces() / children.size();
-        for (int c = 0; c < children.size(); ++c) {
-            FaceLattice::Child child;
-            child.size = refiner.GetLevel(1).GetFaceVertices(children[c]).size();
-            for (auto const& [face, corner] : Get(child.size, depth - 1).places) {
-                child.pointOfRow.push_back(fine.GetFaceVertices(c * perChild + face)[corner]);
-            }
-            lattice.children.push_back(std::move(child));
-        }
-    }
-
-    Sdc::SchemeType _scheme;
-    std::map<std::pair<int, int>, std::unique_ptr<FaceLattice>> _lattices;
-};
-
-/// Rows of doubles, all of one length.
-struct DenseRows {
-    int numColumns = 0;
-    std::vector<double> values;
-
-    double* operator[](int row) { return &values[static_cast<size_t>(row) * numColumns]; }
-    double const* operator[](int row) const { return &values[static_cast<size_t>(row) * numColumns]; }
-};
-
-/// The weights of all refined points of rings, each ring and depth worked out once.
-class RingWeights {
-public:
-    RingWeights(Far::TopologyRefiner const& refiner, bool isVarying, LatticeCache& lattices)
-        : _scheme(refiner.GetSchemeType()),
-          _options(refiner.GetSchemeOptions()),
-          _use(isVarying ? RingSubdivision::Use::VaryingRefinement : RingSubdivision::Use::Refinement),
-          _lattices(lattices) {}
-
-    struct Node {
-        FaceRing const* ring = nullptr;
-        std::vector<SparseRows> steps;             // per child: its points over this ring's
-        std::vector<Node*> children;
-        std::vector<std::unique_ptr<DenseRows>> rows;  // per depth: the lattice's points over the ring's
-    };
-
-    Node& Find(FaceRing const& ring) {
-        auto const [found, isNew] = _nodes.try_emplace(ring);
-        if (isNew) found->second.ring = &found->first;
-        return found->second;
-    }
-
-    DenseRows const& Get(Node& node, int depth) {
-        if (static_cast<int>(node.rows.size()) <= depth) node.rows.resize(static_cast<size_t>(depth) + 1);
-        if (!node.rows[depth]) {
-            node.rows[depth] = std::make_unique<DenseRows>(depth == 0 ? MakeCorners(*node.ring) : Compose(node, depth));
-        }
-        return *node.rows[depth];
-    }
-
-private:
-    struct Hash {
-        size_t operator()(FaceRing const& ring) const { return ring.Hash(); }
-    };
-
-    static DenseRows MakeCorners(FaceRing const& ring) {
-        auto const& points = ring.IsFaceVarying() ? ring.valueIndices : ring.faceVertices;
-        int const size = ring.faceSizes[0];
-        DenseRows rows{ring.numPoints, std::vector<double>(static_cast<size_t>(size) * ring.numPoints, 0.0)};
-        for (int i = 0; i < size; ++i) rows[i][points[i]] = 1.0;
-        return rows;
-    }
-
-    void Subdivide(Node& node) {
-        auto subdivision = RingSubdivision::Build(*node.ring, _scheme, _options, _use);
-        for (auto& child : subdivision.children) {
-            node.steps.push_back(std::move(child.weights));
-            node.children.push_back(&Find(child.ring));
-        }
-    }
-
-    DenseRows Compose(Node& node, int depth) {
-        if (node.children.empty()) Subdivide(node);
-        FaceLattice const& lattice = _lattices.Get(node.ring->faceSizes[0], depth);
-        int const numColumns = node.ring->numPoints;
-        DenseRows rows{numColumns, std::vector<double>(lattice.places.size() * numColumns, 0.0)};
-        std::vector<char> isDone(lattice.places.size(), 0);
-        for (size_t c = 0; c < node.children.size(); ++c) {
-            DenseRows const& fine = Get(*node.children[c], depth - 1);
-            SparseRows const& step = node.steps[c];
-            auto const& pointOfRow = lattice.children[c].pointOfRow;
-            for (int row = 0; row < static_cast<int>(pointOfRow.size()); ++row) {
-                if (isDone[pointOfRow[row]]) continue;  // children share the points between them
-                isDone[pointOfRow[row]] = 1;
-                double* const to = rows[pointOfRow[row]];
-                for (int i = 0; i < fine.numColumns; ++i) {
-                    double const weight = fine[row][i];
-                    if (weight == 0.0) continue;
-                    for (int k = step.offsets[i]; k < step.offsets[i + 1]; ++k) {
-                        to[step.indices[k]] += weight * step.weights[k];
-                    }
-                }
-            }
-        }
-        return rows;
-    }
-
-    Sdc::SchemeType _scheme;
-    Sdc::Options _options;
-    RingSubdivision::Use _use;
-    LatticeCache& _lattices;
-    std::unordered_map<FaceRing, Node, Hash> _nodes;
-};
 
 /// Walks the base faces and gives every refined point to the first face that has it.
 class FaceWalk {
