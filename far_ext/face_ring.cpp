@@ -52,8 +52,9 @@ void FaceRingGatherer::GatherPoints(Index face, std::vector<Index>& points) {
     _faces.Reset();
 }
 
-FaceRing::Corner FaceRingGatherer::MakeCorner(Index vertex, Index face) const {
-    FaceRing::Corner corner;
+void FaceRingGatherer::MakeCorner(Index vertex, Index face, FaceRing::Corner& corner) const {
+    corner.faces.clear();
+    corner.edges.clear();
     corner.sharpness = _level.GetVertexSharpness(vertex);
     corner.isNonManifold = _level.IsVertexNonManifold(vertex);
     for (Index around : _level.GetVertexFaces(vertex)) corner.faces.push_back(_faces[around]);
@@ -65,11 +66,14 @@ FaceRing::Corner FaceRingGatherer::MakeCorner(Index vertex, Index face) const {
                     corner.edges.end());
         std::rotate(corner.faces.begin(), start, corner.faces.end());
     }
-    return corner;
 }
 
 void FaceRingGatherer::Gather(Index face, FaceRing& ring, std::vector<Index>& points) {
-    ring = FaceRing{};
+    // A ring that is used again keeps its memory.
+    for (auto* list : {&ring.faceVertices, &ring.faceEdges, &ring.valueIndices}) list->clear();
+    ring.faceSizes.clear();
+    ring.edges.clear();
+    ring.corners.resize(static_cast<size_t>(_level.GetFaceVertices(face).size()));
     NumberFaces(face);
     for (Index inRing : _faces.GetMembers()) {
         auto const vertices = _level.GetFaceVertices(inRing);
@@ -89,8 +93,9 @@ void FaceRingGatherer::Gather(Index face, FaceRing& ring, std::vector<Index>& po
         auto const ends = _level.GetEdgeVertices(edge);
         ring.edges.push_back({{_vertices[ends[0]], _vertices[ends[1]]}});
     }
+    auto corner = ring.corners.begin();
     for (Index vertex : _level.GetFaceVertices(face)) {
-        ring.corners.push_back(MakeCorner(vertex, face));
+        MakeCorner(vertex, face, *corner++);
         for (Index edge : _level.GetVertexEdges(vertex)) {
             FaceRing::Edge& local = ring.edges[_edges[edge]];
             local.sharpness = _level.GetEdgeSharpness(edge);

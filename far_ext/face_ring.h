@@ -87,7 +87,7 @@ private:
     };
 
     void NumberFaces(Index face);
-    FaceRing::Corner MakeCorner(Index vertex, Index face) const;
+    void MakeCorner(Index vertex, Index face, FaceRing::Corner& corner) const;
 
     Far::TopologyLevel _level;  // a view
     int _channel;

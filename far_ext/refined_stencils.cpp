@@ -32,16 +32,19 @@ Far::ConstIndexArray GetFacePoints(Level const& level, Index face, RefinedStenci
 // -------- one level: rows as PrimvarRefiner blends them
 
 /// What PrimvarRefiner writes to instead of a value: a row's controls and weights.
+template <class Real>
 struct RecordedRow {
-    std::vector<std::pair<Index, float>>* entries = nullptr;  // of all rows, one after another
-    size_t begin = 0, size = 0;
+    std::vector<std::pair<Index, Real>>* entries = nullptr;  // of all rows, one after another
+    size_t begin = 0;
+    int size = 0;
 
     void Clear() { size = 0; }
-    void AddWithWeight(Index control, float weight) {
-        if (weight == 0.0f) return;
+    void AddWithWeight(Index control, Real weight) {
+        if (weight == Real(0)) return;
         if (size == 0) begin = entries->size();
         auto const own = entries->begin() + static_cast<std::ptrdiff_t>(begin);
-        auto const same = std::find_if(own, entries->end(), [&](auto const& entry) { return entry.first == control; });
+        auto const same = std::find_if(own, entries->end(),
+                                       [&](auto const& entry) { return entry.first == control; });
         if (same != entries->end()) {
             same->second += weight;
         } else {
@@ -50,9 +53,9 @@ struct RecordedRow {
         }
     }
     /// Rows blend into later ones: an edge's takes in those of its faces.
-    void AddWithWeight(RecordedRow const& other, float weight) {
-        for (size_t k = other.begin; k < other.begin + other.size; ++k) {
-            auto const [control, own] = (*entries)[k];
+    void AddWithWeight(RecordedRow const& other, Real weight) {
+        for (int k = 0; k < other.size; ++k) {
+            auto const [control, own] = (*entries)[other.begin + static_cast<size_t>(k)];
             AddWithWeight(control, weight * own);
         }
     }
@@ -63,12 +66,13 @@ struct ControlNumbers {
     Index operator[](Index control) const { return control; }
 };
 
+template <class Real>
 StencilGroups RecordOneLevel(Far::TopologyRefiner const& refiner, RefinedStencilOptions const& options) {
     Index const numRows = CountPoints(refiner.GetLevel(1), options);
-    std::vector<std::pair<Index, float>> entries;
+    std::vector<std::pair<Index, Real>> entries;
     entries.reserve(static_cast<size_t>(numRows) * 8);
-    std::vector<RecordedRow> rows(static_cast<size_t>(numRows), RecordedRow{&entries});
-    Far::PrimvarRefinerReal<float> const primvars(refiner);
+    std::vector<RecordedRow<Real>> rows(static_cast<size_t>(numRows), RecordedRow<Real>{&entries});
+    Far::PrimvarRefinerReal<Real> const primvars(refiner);
     ControlNumbers const controls;
     switch (options.mode) {
         case Mode::Vertex: primvars.Interpolate(1, controls, rows); break;
@@ -81,9 +85,10 @@ StencilGroups RecordOneLevel(Far::TopologyRefiner const& refiner, RefinedStencil
     for (Index row = 0; row < numRows; ++row) {
         indices.clear();
         weights.clear();
-        for (size_t k = rows[row].begin; k < rows[row].begin + rows[row].size; ++k) {
-            indices.push_back(entries[k].first);
-            weights.push_back(entries[k].second);
+        for (int k = 0; k < rows[row].size; ++k) {
+            auto const& [control, weight] = entries[rows[row].begin + static_cast<size_t>(k)];
+            indices.push_back(control);
+            weights.push_back(static_cast<float>(weight));
         }
         builder.AddSingle(row, indices, weights);
     }
@@ -279,7 +284,11 @@ StencilGroups BuildRefinedStencils(Far::TopologyRefiner const& refiner, RefinedS
         throw Error(ErrorCode::BadOption, fmt::format("there is no face-varying channel {}; the topology has {}",
                                                       options.fvarChannel, numChannels));
     }
-    if (refiner.GetMaxLevel() == 1) return RecordOneLevel(refiner, options);
+    if (refiner.GetMaxLevel() == 1) {
+        // Loop's weights come from a cosine, whose last bits depend on the CPU: rounded from double they do not.
+        bool const isLoop = refiner.GetSchemeType() == Sdc::SCHEME_LOOP;
+        return isLoop ? RecordOneLevel<double>(refiner, options) : RecordOneLevel<float>(refiner, options);
+    }
     if (options.mode == Mode::FaceVarying && !IsSetByRings(refiner.GetLevel(0), options.fvarChannel)) {
         return GroupFarTable(refiner, options.fvarChannel);
     }

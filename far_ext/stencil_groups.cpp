@@ -109,6 +109,11 @@ int FindKept(std::unordered_multimap<uint64_t, int> const& kept, uint64_t hash, 
     return found == last ? -1 : found->second;
 }
 
+void CheckSize(size_t size) {
+    constexpr size_t kLimit = static_cast<size_t>(std::numeric_limits<Index>::max());
+    if (size > kLimit) throw Error(ErrorCode::TooLarge, "a stencil table passes 2^31 entries");
+}
+
 }  // namespace
 
 StencilGroupsBuilder::StencilGroupsBuilder(Index numRows, Index numControls, int numSets)
@@ -175,6 +180,8 @@ void StencilGroupsBuilder::AddGroup(int block, std::vector<Index> const& rows, s
                              static_cast<Index>(_table.runStarts.size())});
     _table.controls.insert(_table.controls.end(), controls.begin(), controls.end());
     _table.runStarts.insert(_table.runStarts.end(), starts.begin(), starts.end());
+    CheckSize(_table.controls.size());
+    CheckSize(_table.runStarts.size());
 }
 
 void StencilGroupsBuilder::AddSingle(Index row, std::vector<Index> const& controls,
@@ -182,19 +189,22 @@ void StencilGroupsBuilder::AddSingle(Index row, std::vector<Index> const& contro
     auto& singles = _table.singles;
     int const size = static_cast<int>(controls.size());
     Single single{row, size, static_cast<Index>(singles.indices.size()), static_cast<Index>(singles.weights.size())};
-    uint64_t const hash = HashOf(weights.data(), weights.size(), weights.size());
-    int const kept = FindKept(_lookup->singles, hash, [&](int other) {
+    auto const isEqual = [&](int other) {
         return _singles[other].size == size &&
                std::memcmp(singles.weights.data() + _singles[other].firstWeight, weights.data(), BytesOf(weights)) == 0;
-    });
-    if (kept < 0) {
-        _lookup->singles.emplace(hash, static_cast<int>(_singles.size()));
-        singles.weights.insert(singles.weights.end(), weights.begin(), weights.end());
-    } else {
-        single.firstWeight = _singles[kept].firstWeight;
+    };
+    int kept = static_cast<int>(_singles.size()) - 1;  // most rows are like the one before
+    if (kept < 0 || !isEqual(kept)) {
+        uint64_t const hash = HashOf(weights.data(), weights.size(), weights.size());
+        kept = FindKept(_lookup->singles, hash, isEqual);
+        if (kept < 0) _lookup->singles.emplace(hash, static_cast<int>(_singles.size()));
     }
+    if (kept < 0) singles.weights.insert(singles.weights.end(), weights.begin(), weights.end());
+    else single.firstWeight = _singles[kept].firstWeight;
     singles.indices.insert(singles.indices.end(), controls.begin(), controls.end());
     _singles.push_back(single);
+    CheckSize(singles.indices.size());
+    CheckSize(singles.weights.size());
 }
 
 /// Orders the single rows and joins those that follow each other and have equal weights.
@@ -225,11 +235,6 @@ void StencilGroupsBuilder::MakeRuns() {
 }
 
 StencilGroups StencilGroupsBuilder::Finish() {
-    constexpr size_t kLimit = static_cast<size_t>(std::numeric_limits<Index>::max());
-    for (size_t size : {_table.controls.size(), _table.runStarts.size(), _table.singles.indices.size(),
-                        _table.singles.weights.size(), _table.groups.size()}) {
-        if (size > kLimit) throw Error(ErrorCode::TooLarge, "a stencil table passes 2^31 entries");
-    }
     MakeRuns();
     return std::move(_table);
 }

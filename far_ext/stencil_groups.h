@@ -75,6 +75,8 @@ struct StencilGroups {
 };
 
 /// Puts groups together and keeps equal blocks, shapes and single rows' weights once.
+///
+/// \throws Error  TooLarge: an array passes 2^31 entries
 class StencilGroupsBuilder {
 public:
     StencilGroupsBuilder(Index numRows, Index numControls, int numSets);
@@ -89,7 +91,6 @@ public:
     /// Adds a row on its own, in any order; `weights` lie as [set][control].
     void AddSingle(Index row, std::vector<Index> const& controls, std::vector<float> const& weights);
 
-    /// \throws Error  TooLarge: an array passes 2^31 entries
     StencilGroups Finish();
 
 private:
@@ -111,7 +112,7 @@ private:
 /// are found for a block to pay, single rows otherwise.
 ///
 /// \pre    Validate(rows)
-/// \throws Error  TooLarge: as StencilGroupsBuilder::Finish
+/// \throws Error  TooLarge: as StencilGroupsBuilder
 StencilGroups GroupRows(StencilRowsView const& rows);
 
 }  // namespace limn::far_ext

@@ -1,12 +1,22 @@
 #include "far_ext/stencil_rows.h"
 
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
 #include "far_ext/error.h"
 
 namespace limn::far_ext {
+
+void StencilRows::EndRow() {
+    if (_indices.size() > static_cast<std::size_t>(std::numeric_limits<Index>::max())) {
+        throw Error(ErrorCode::TooLarge, "a stencil table passes 2^31 entries");
+    }
+    Index const begin = _sizes.empty() ? 0 : _offsets.back() + _sizes.back();
+    _offsets.push_back(begin);
+    _sizes.push_back(static_cast<int>(_indices.size()) - begin);
+}
 
 void Validate(StencilRowsView const& rows) {
     auto const refuse = [](std::string const& message) { throw Error(ErrorCode::BadMesh, message); };

@@ -50,11 +50,8 @@ public:
         _indices.push_back(control);
         for (int set = 0; set < _numSets; ++set) _weights[set].push_back(weights[set]);
     }
-    void EndRow() {
-        Index const begin = _sizes.empty() ? 0 : _offsets.back() + _sizes.back();
-        _offsets.push_back(begin);
-        _sizes.push_back(static_cast<int>(_indices.size()) - begin);
-    }
+    /// \throws Error  TooLarge: more than 2^31 entries
+    void EndRow();
 
     StencilRowsView GetView() const {
         StencilRowsView view{_sizes.data(), _offsets.data(),   _indices.data(), {},
