@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <utility>
 
 #include <opensubdiv/far/topologyRefinerFactory.h>
 
@@ -22,8 +23,8 @@ size_t FaceRing::Hash() const {
     return static_cast<size_t>(hash ^ (hash >> 32));
 }
 
-FaceRingGatherer::FaceRingGatherer(Far::TopologyLevel const& level, int channel)
-    : _level(level), _channel(channel) {
+FaceRingGatherer::FaceRingGatherer(Far::TopologyLevel const& level, int channel, Starts starts)
+    : _level(level), _channel(channel), _starts(starts) {
     _faces.Resize(level.GetNumFaces());
     _vertices.Resize(level.GetNumVertices());
     _edges.Resize(level.GetNumEdges());
@@ -37,6 +38,17 @@ void FaceRingGatherer::NumberFaces(Index face) {
         int const start = around.FindIndex(face);
         for (int i = 1; i < around.size(); ++i) _faces.Add(around[(start + i) % around.size()]);
     }
+}
+
+/// The corner a face of the ring starts with.
+int FaceRingGatherer::FindStart(Far::ConstIndexArray vertices) const {
+    if (_starts == Starts::AsInLevel) return 0;
+    int start = 0;
+    auto const rank = [&](int corner) { return static_cast<unsigned>(_vertices[vertices[corner]]); };  // -1 last
+    for (int i = 1; i < vertices.size(); ++i) {
+        if (rank(i) < rank(start)) start = i;
+    }
+    return start;
 }
 
 void FaceRingGatherer::GatherPoints(Index face, std::vector<Index>& points) {
@@ -77,13 +89,15 @@ void FaceRingGatherer::Gather(Index face, FaceRing& ring, std::vector<Index>& po
     NumberFaces(face);
     for (Index inRing : _faces.GetMembers()) {
         auto const vertices = _level.GetFaceVertices(inRing);
-        ring.faceSizes.push_back(vertices.size());
-        for (Index vertex : vertices) ring.faceVertices.push_back(_vertices.Add(vertex));
-        for (Index edge : _level.GetFaceEdges(inRing)) ring.faceEdges.push_back(_edges.Add(edge));
-        if (_channel < 0) continue;
-        for (Index value : _level.GetFaceFVarValues(inRing, _channel)) {
-            ring.valueIndices.push_back(_values.Add(value));
-        }
+        int const size = vertices.size(), start = inRing == face ? 0 : FindStart(vertices);
+        auto const add = [&](auto const& members, Numbering& numbering, std::vector<Index>& list) {
+            for (int i = start; i < size; ++i) list.push_back(numbering.Add(members[i]));
+            for (int i = 0; i < start; ++i) list.push_back(numbering.Add(members[i]));
+        };
+        ring.faceSizes.push_back(size);
+        add(vertices, _vertices, ring.faceVertices);
+        add(_level.GetFaceEdges(inRing), _edges, ring.faceEdges);
+        if (_channel >= 0) add(_level.GetFaceFVarValues(inRing, _channel), _values, ring.valueIndices);
     }
     ring.numVertices = static_cast<Index>(_vertices.GetMembers().size());
     points = (_channel >= 0 ? _values : _vertices).GetMembers();
@@ -91,7 +105,9 @@ void FaceRingGatherer::Gather(Index face, FaceRing& ring, std::vector<Index>& po
 
     for (Index edge : _edges.GetMembers()) {
         auto const ends = _level.GetEdgeVertices(edge);
-        ring.edges.push_back({{_vertices[ends[0]], _vertices[ends[1]]}});
+        Index a = _vertices[ends[0]], b = _vertices[ends[1]];
+        if (_starts == Starts::Canonical && a > b) std::swap(a, b);
+        ring.edges.push_back({{a, b}});
     }
     auto corner = ring.corners.begin();
     for (Index vertex : _level.GetFaceVertices(face)) {

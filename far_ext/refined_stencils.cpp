@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -127,13 +128,18 @@ bool IsSetByRings(Level const& level, int channel) {
 }
 
 /// Far's own table, grouped afterwards.
-StencilGroups GroupFarTable(Far::TopologyRefiner const& refiner, int channel) {
-    Far::StencilTableFactory::Options options;
-    options.interpolationMode = Far::StencilTableFactory::INTERPOLATE_FACE_VARYING;
-    options.generateIntermediateLevels = false;
-    options.generateOffsets = true;
-    options.fvarChannel = static_cast<unsigned>(channel);
-    std::unique_ptr<Far::StencilTable const> const table(Far::StencilTableFactory::Create(refiner, options));
+StencilGroups GroupFarTable(Far::TopologyRefiner const& refiner, RefinedStencilOptions const& options) {
+    using Factory = Far::StencilTableFactory;
+    Factory::Options farOptions;
+    switch (options.mode) {
+        case Mode::Vertex: farOptions.interpolationMode = Factory::INTERPOLATE_VERTEX; break;
+        case Mode::Varying: farOptions.interpolationMode = Factory::INTERPOLATE_VARYING; break;
+        case Mode::FaceVarying: farOptions.interpolationMode = Factory::INTERPOLATE_FACE_VARYING; break;
+    }
+    farOptions.generateIntermediateLevels = false;
+    farOptions.generateOffsets = true;
+    farOptions.fvarChannel = static_cast<unsigned>(options.fvarChannel);
+    std::unique_ptr<Far::StencilTable const> const table(Factory::Create(refiner, farOptions));
     return GroupRows(ViewStencils(*table));
 }
 
@@ -150,12 +156,19 @@ public:
           _fine(refiner.GetLevel(_depth)),
           _lattices(refiner.GetSchemeType()),
           _weights(refiner, options.mode == Mode::Varying, _lattices),
-          _gatherer(_base, options.mode == Mode::FaceVarying ? options.fvarChannel : -1),
+          _gatherer(_base, options.mode == Mode::FaceVarying ? options.fvarChannel : -1,
+                    FaceRingGatherer::Starts::Canonical),
           _isDone(static_cast<size_t>(CountPoints(_fine, options)), 0),
           _builder(CountPoints(_fine, options), CountPoints(_base, options), 1) {}
 
-    StencilGroups Build() {
-        for (Index face = 0; face < _base.GetNumFaces(); ++face) AddFace(face);
+    /// None if so many rings differ that Far's table costs less.
+    std::optional<StencilGroups> Build() {
+        constexpr size_t kRowsPerRing = 256;  // of Far's table take as long as one ring
+        constexpr size_t kFewRings = 1024;    // take no time to speak of
+        for (Index face = 0; face < _base.GetNumFaces(); ++face) {
+            AddFace(face);
+            if (_parts.size() > kFewRings && _parts.size() * kRowsPerRing > _isDone.size()) return {};
+        }
         AddUnusedPoints();
         return _builder.Finish();
     }
@@ -289,10 +302,11 @@ StencilGroups BuildRefinedStencils(Far::TopologyRefiner const& refiner, RefinedS
         bool const isLoop = refiner.GetSchemeType() == Sdc::SCHEME_LOOP;
         return isLoop ? RecordOneLevel<double>(refiner, options) : RecordOneLevel<float>(refiner, options);
     }
-    if (options.mode == Mode::FaceVarying && !IsSetByRings(refiner.GetLevel(0), options.fvarChannel)) {
-        return GroupFarTable(refiner, options.fvarChannel);
+    std::optional<StencilGroups> groups;
+    if (options.mode != Mode::FaceVarying || IsSetByRings(refiner.GetLevel(0), options.fvarChannel)) {
+        groups = FaceWalk(refiner, options).Build();
     }
-    return FaceWalk(refiner, options).Build();
+    return groups ? std::move(*groups) : GroupFarTable(refiner, options);
 }
 
 }  // namespace limn::far_ext

@@ -23,7 +23,8 @@ struct RefinedStencilOptions {
 ///          once, by its own children's weights; a face only adds its control points and its place in
 ///          the table. One level makes too small groups to pay: there every row is taken from
 ///          Far::PrimvarRefiner as it stands. Face-varying values that meet themselves at a vertex,
-///          where OpenSubdiv's rule depends on the order of the faces, go through Far's own table.
+///          where OpenSubdiv's rule depends on the order of the faces, go through Far's own table, and so
+///          do large meshes too irregular for their rings to repeat.
 /// Memory   Besides the table, one dense block of weights per distinct ring and its children.
 /// Usable from C++17.
 ///

@@ -413,7 +413,9 @@ RingSubdivision RingSubdivision::Build(FaceRing const& ring, Sdc::SchemeType sch
     }
 
     Level const coarse = refiner->GetLevel(0), fine = refiner->GetLevel(1);
-    FaceRingGatherer gatherer(fine, ring.IsFaceVarying() ? 0 : -1);
+    using Starts = FaceRingGatherer::Starts;
+    FaceRingGatherer gatherer(fine, ring.IsFaceVarying() ? 0 : -1,
+                              use == Use::Limit ? Starts::AsInLevel : Starts::Canonical);
     bool const isSplitInSubFaces = scheme != Sdc::SCHEME_LOOP && ring.faceSizes[0] != 4;
     std::vector<Index> points;
     for (Index childFace : coarse.GetFaceChildFaces(0)) {
