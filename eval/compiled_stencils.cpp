@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include "eval/stencil_kernel.h"
+#include "far_ext/error.h"
 
 namespace limn::eval {
 
@@ -27,6 +29,11 @@ constexpr Index kRowsPerTask = 8192;  // some tens of microseconds
 }  // namespace
 
 CompiledStencils::CompiledStencils(far_ext::StencilGroups groups, Options options) : _groups(std::move(groups)) {
+    for (auto const& block : _groups.blocks) {
+        if (block.numColumns <= far_ext::StencilGroups::kMaxColumns) continue;
+        throw Error(ErrorCode::BadOption, fmt::format("a group of stencils has {} control vertices; at most {} are possible",
+                                                      block.numColumns, far_ext::StencilGroups::kMaxColumns));
+    }
     if (options.isForOneColumn) {
         _slices = MakeSlices(_groups);
         _groups.singles = {};

@@ -27,6 +27,8 @@ public:
     };
 
     /// Compiles rows already grouped, such as those of far_ext::BuildRefinedStencils.
+    ///
+    /// \throws Error  BadOption: a group of more than StencilGroups::kMaxColumns control vertices
     CompiledStencils(far_ext::StencilGroups groups, Options options);
     explicit CompiledStencils(far_ext::StencilGroups groups) : CompiledStencils(std::move(groups), Options()) {}
 

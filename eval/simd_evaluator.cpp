@@ -34,6 +34,10 @@ far_ext::StencilRowsView MakeView(int const* sizes, int const* offsets, int cons
 
 }  // namespace
 
+void SimdEvaluator::RequireObject(void const* object) {
+    if (!object) Refuse("a stencil evaluation lacks a buffer or a table: a null pointer");
+}
+
 void SimdEvaluator::Check(float const* source, BufferDescriptor const& sourceDesc, Targets const& targets, int numSets,
                           int numRows, int start, int end) {
     auto const check = [&](char const* what, void const* values, BufferDescriptor const& desc) {

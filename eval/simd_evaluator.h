@@ -44,7 +44,7 @@ public:
                              SimdEvaluator const* instance = nullptr, void* deviceContext = nullptr) {
         (void)instance;
         (void)deviceContext;
-        return Apply(source->BindCpuBuffer(), sourceDesc, {{target->BindCpuBuffer(), targetDesc}}, *table);
+        return Apply(Bind(source), sourceDesc, {{Bind(target), targetDesc}}, Require(table));
     }
 
     static bool EvalStencils(float const* source, Osd::BufferDescriptor const& sourceDesc, float* target,
@@ -63,9 +63,9 @@ public:
                              void* deviceContext = nullptr) {
         (void)instance;
         (void)deviceContext;
-        return Apply(source->BindCpuBuffer(), sourceDesc,
-                     {{target->BindCpuBuffer(), targetDesc}, {du->BindCpuBuffer(), duDesc}, {dv->BindCpuBuffer(), dvDesc}},
-                     *table);
+        return Apply(Bind(source), sourceDesc,
+                     {{Bind(target), targetDesc}, {Bind(du), duDesc}, {Bind(dv), dvDesc}},
+                     Require(table));
     }
 
     static bool EvalStencils(float const* source, Osd::BufferDescriptor const& sourceDesc, float* target,
@@ -90,14 +90,14 @@ public:
                              SimdEvaluator const* instance = nullptr, void* deviceContext = nullptr) {
         (void)instance;
         (void)deviceContext;
-        return Apply(source->BindCpuBuffer(), sourceDesc,
-                     {{target->BindCpuBuffer(), targetDesc},
-                      {du->BindCpuBuffer(), duDesc},
-                      {dv->BindCpuBuffer(), dvDesc},
-                      {duu->BindCpuBuffer(), duuDesc},
-                      {duv->BindCpuBuffer(), duvDesc},
-                      {dvv->BindCpuBuffer(), dvvDesc}},
-                     *table);
+        return Apply(Bind(source), sourceDesc,
+                     {{Bind(target), targetDesc},
+                      {Bind(du), duDesc},
+                      {Bind(dv), dvDesc},
+                      {Bind(duu), duuDesc},
+                      {Bind(duv), duvDesc},
+                      {Bind(dvv), dvvDesc}},
+                     Require(table));
     }
 
     static bool EvalStencils(float const* source, Osd::BufferDescriptor const& sourceDesc, float* target,
@@ -127,6 +127,20 @@ public:
                       int numRows, int start, int end);
 
 private:
+    /// \throws Error  BadOption where there is no object
+    static void RequireObject(void const* object);
+
+    template <class Table>
+    static Table const& Require(Table const* table) {
+        RequireObject(table);
+        return *table;
+    }
+    template <class Buffer>
+    static float* Bind(Buffer* buffer) {
+        RequireObject(buffer);
+        return buffer->BindCpuBuffer();
+    }
+
     static bool Apply(float const* source, Osd::BufferDescriptor const& sourceDesc, Targets const& targets,
                       CompiledStencils const& table) {
         return Apply(source, sourceDesc, targets, table, 0, table.GetNumStencils());

@@ -339,6 +339,11 @@ TEST(SimdEvaluator, BadInputIsRefused) {
     float* const to = target.data();
     EXPECT_THROW(SimdEvaluator::EvalStencils(source.data(), Tight(3), to, Tight(3), to, Tight(3), to, Tight(3), table, 0, 1), Error)
         << "no derivatives in this table";
+    Osd::CpuVertexBuffer* const noBuffer = nullptr;
+    EXPECT_THROW(SimdEvaluator::EvalStencils(noBuffer, Tight(3), noBuffer, Tight(3), &table), Error);
+    far_ext::StencilGroups wide;
+    wide.blocks.push_back({1, 1000, 0});
+    EXPECT_THROW(CompiledStencils{wide}, Error);
     StencilEvaluator const reference(EvaluatorKind::OsdCpu, far_ext::BuildRefinedStencils(*refiner));
     EXPECT_THROW(reference.EvalStencils(source.data(), Tight(3), {{to, Tight(4)}}, 0, 1), Error);
     EXPECT_THROW(reference.EvalStencils(source.data(), Tight(3), {{to, Tight(3)}}, 0, 10000), Error);
