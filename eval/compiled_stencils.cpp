@@ -45,11 +45,11 @@ CompiledStencils CompiledStencils::Compile(far_ext::StencilRowsView const& rows,
     return CompiledStencils(far_ext::GroupRows(rows), options);
 }
 
-CompiledStencils CompiledStencils::Compile(Far::StencilTable const& table, Options options) {
+CompiledStencils CompiledStencils::Compile(Far::StencilTableReal<float> const& table, Options options) {
     return Compile(far_ext::ViewStencils(table), options);
 }
 
-CompiledStencils CompiledStencils::Compile(Far::LimitStencilTable const& table, Options options) {
+CompiledStencils CompiledStencils::Compile(Far::LimitStencilTableReal<float> const& table, Options options) {
     return Compile(far_ext::ViewLimitStencils(table), options);
 }
 

@@ -37,9 +37,9 @@ public:
     /// \throws Error  as far_ext::Validate and far_ext::GroupRows
     static CompiledStencils Compile(far_ext::StencilRowsView const& rows, Options options);
 
-    /// Compiles a table of Far, which is not kept. Limit stencils bring as many derivatives as they hold.
-    static CompiledStencils Compile(Far::StencilTable const& table, Options options);
-    static CompiledStencils Compile(Far::LimitStencilTable const& table, Options options);
+    /// Compiles a table of Far (a Far::StencilTable or Far::LimitStencilTable), which is not kept. Limit stencils bring as many derivatives as they hold.
+    static CompiledStencils Compile(Far::StencilTableReal<float> const& table, Options options);
+    static CompiledStencils Compile(Far::LimitStencilTableReal<float> const& table, Options options);
 
     template <class Table>
     static CompiledStencils Compile(Table const& table) {

@@ -136,7 +136,7 @@ private:
         return *table;
     }
     template <class Buffer>
-    static float* Bind(Buffer* buffer) {
+    static auto Bind(Buffer* buffer) {
         RequireObject(buffer);
         return buffer->BindCpuBuffer();
     }

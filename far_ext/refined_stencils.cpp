@@ -129,7 +129,7 @@ bool IsSetByRings(Level const& level, int channel) {
 
 /// Far's own table, grouped afterwards.
 StencilGroups GroupFarTable(Far::TopologyRefiner const& refiner, RefinedStencilOptions const& options) {
-    using Factory = Far::StencilTableFactory;
+    using Factory = Far::StencilTableFactoryReal<float>;
     Factory::Options farOptions;
     switch (options.mode) {
         case Mode::Vertex: farOptions.interpolationMode = Factory::INTERPOLATE_VERTEX; break;
@@ -139,7 +139,7 @@ StencilGroups GroupFarTable(Far::TopologyRefiner const& refiner, RefinedStencilO
     farOptions.generateIntermediateLevels = false;
     farOptions.generateOffsets = true;
     farOptions.fvarChannel = static_cast<unsigned>(options.fvarChannel);
-    std::unique_ptr<Far::StencilTable const> const table(Factory::Create(refiner, farOptions));
+    std::unique_ptr<Far::StencilTableReal<float> const> const table(Factory::Create(refiner, farOptions));
     return GroupRows(ViewStencils(*table));
 }
 

@@ -26,7 +26,7 @@ using test::MakeFarTable;
 
 BufferDescriptor Tight(int length) { return {0, length, length}; }
 
-std::vector<float> EvaluateWithOsd(Far::StencilTable const& table, std::vector<float> const& source, int length) {
+std::vector<float> EvaluateWithOsd(test::FarTable const& table, std::vector<float> const& source, int length) {
     std::vector<float> target(static_cast<size_t>(table.GetNumStencils()) * length);
     Osd::CpuEvaluator::EvalStencils(source.data(), Tight(length), target.data(), Tight(length), table.GetSizes().data(),
                                     table.GetOffsets().data(), table.GetControlIndices().data(),
@@ -48,7 +48,7 @@ std::vector<float> EvaluateCompiled(CompiledStencils const& table, std::vector<f
     return EvaluateCompiled(table, source, length, 0, table.GetNumStencils());
 }
 
-std::vector<float> EvaluateRaw(Far::StencilTable const& table, std::vector<float> const& source, int length, int start,
+std::vector<float> EvaluateRaw(test::FarTable const& table, std::vector<float> const& source, int length, int start,
                                int end) {
     std::vector<float> target(static_cast<size_t>(table.GetNumStencils()) * length, kUntouched);
     SimdEvaluator::EvalStencils(source.data(), Tight(length), target.data(), Tight(length), table.GetSizes().data(),
@@ -100,7 +100,7 @@ TEST(SimdEvaluator, EqualsOpenSubdivOnEveryCage) {
 
 /// Six weight sets through any evaluator that mirrors OpenSubdiv's raw form.
 template <class Evaluator>
-std::vector<float> EvaluateSets(Far::LimitStencilTable const& table, std::vector<float> const& source) {
+std::vector<float> EvaluateSets(test::FarLimitTable const& table, std::vector<float> const& source) {
     size_t const size = static_cast<size_t>(table.GetNumStencils()) * 3;
     std::vector<float> out(6 * size);
     float* const to = out.data();

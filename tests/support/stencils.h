@@ -19,34 +19,40 @@ inline std::unique_ptr<Far::TopologyRefiner> RefineUniformly(far_ext::ControlMes
     return refiner;
 }
 
+// Tables by the names of their templates: Far::StencilTableFactory casts them to a class they are not of, which the
+// undefined-behaviour sanitizer reports.
+using FarTable = Far::StencilTableReal<float>;
+using FarLimitTable = Far::LimitStencilTableReal<float>;
+
 /// Far's table of the last level.
-inline std::unique_ptr<Far::StencilTable const> MakeFarTable(Far::TopologyRefiner const& refiner, int interpolationMode) {
-    Far::StencilTableFactory::Options options;
+inline std::unique_ptr<FarTable const> MakeFarTable(Far::TopologyRefiner const& refiner, int interpolationMode) {
+    using Factory = Far::StencilTableFactoryReal<float>;
+    Factory::Options options;
     options.interpolationMode = static_cast<unsigned>(interpolationMode) & 3u;
     options.generateIntermediateLevels = false;
     options.generateOffsets = true;
-    return std::unique_ptr<Far::StencilTable const>(Far::StencilTableFactory::Create(refiner, options));
+    return std::unique_ptr<FarTable const>(Factory::Create(refiner, options));
 }
 
 /// Far's limit stencils with second derivatives at the same grid of places in every face.
 ///
 /// \param refiner  refined by RefineAdaptive
-inline std::unique_ptr<Far::LimitStencilTable const> MakeFarLimitTable(Far::TopologyRefiner const& refiner) {
+inline std::unique_ptr<FarLimitTable const> MakeFarLimitTable(Far::TopologyRefiner const& refiner) {
     static float const s[] = {0.1f, 0.6f, 0.85f, 0.3f, 0.5f, 0.2f}, t[] = {0.2f, 0.3f, 0.1f, 0.65f, 0.45f, 0.05f};
     Far::PtexIndices const faces(refiner);
-    Far::LimitStencilTableFactory::LocationArrayVec places;
+    using Factory = Far::LimitStencilTableFactoryReal<float>;
+    Factory::LocationArrayVec places;
     for (int face = 0; face < faces.GetNumFaces(); ++face) {
-        Far::LimitStencilTableFactory::LocationArray array;
+        Factory::LocationArray array;
         array.ptexIdx = face;
         array.numLocations = 6;
         array.s = s;
         array.t = t;
         places.push_back(array);
     }
-    Far::LimitStencilTableFactory::Options options;
+    Factory::Options options;
     options.generate1stDerivatives = options.generate2ndDerivatives = true;
-    return std::unique_ptr<Far::LimitStencilTable const>(
-        Far::LimitStencilTableFactory::Create(refiner, places, nullptr, nullptr, options));
+    return std::unique_ptr<FarLimitTable const>(Factory::Create(refiner, places, nullptr, nullptr, options));
 }
 
 inline std::vector<float> MakeRandomValues(size_t count, unsigned seed) {
