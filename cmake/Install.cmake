@@ -1,7 +1,7 @@
 # The install tree: headers under include/limn, the floors as limn::far_ext, limn::eval, limn::engine.
 include(CMakePackageConfigHelpers)
 
-install(TARGETS limn_far_ext limn_eval limn_engine EXPORT limnTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS limn_far_ext limn_eval limn_evaluators limn_engine EXPORT limnTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS limn RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS limn_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/limn)
 foreach(floor far_ext eval engine)

@@ -1,10 +1,9 @@
 #include "engine/evaluate.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <iterator>
-#include <memory>
-#include <numeric>
 
 #include <fmt/format.h>
 #include <opensubdiv/bfr/parameterization.h>
@@ -45,20 +44,14 @@ bool ParseField(std::string_view field, Number& value) {
     return code == std::errc() && stop == field.data() + field.size();
 }
 
-/// A place of a face's domain: which sub-quad of an n-gon, and (s,t) there.
-struct DomainPlace {
-    int domain = 0;
-    double s = 0.0, t = 0.0;
-};
-
 class PlaceMapper {
 public:
     PlaceMapper(Scene const& scene, PlaceList const& places, std::string const& path)
         : _scene(scene), _places(places), _path(path) {}
 
-    DomainPlace Map(size_t row, int faceSize) const {
+    eval::SurfacePlace Map(size_t row, int faceSize) const {
         Bfr::Parameterization const parameters(_scene.cage.scheme, faceSize);
-        DomainPlace place{0, _places.s[row], _places.t[row]};
+        eval::SurfacePlace place{_places.faces[row], 0, _places.s[row], _places.t[row]};
         constexpr double kSlack = 1e-12;
         auto const isIn = [&](double x, double high) { return x >= -kSlack && x <= high + kSlack; };
         bool isInside;
@@ -138,42 +131,28 @@ PlaceList ReadPlaces(std::string const& path) {
     return places;
 }
 
-std::string EvaluatePlaces(Scene const& scene, Far::TopologyRefiner const& refiner, PlaceList const& places, std::string const& path, bool isLeftHanded,
-                           bool isDouble, size_t& numWithout) {
-    eval::LimitSurface const surface(refiner);
+std::vector<eval::SurfacePlace> LocatePlaces(Scene const& scene, eval::LimitSurface const& surface,
+                                             PlaceList const& places, std::string const& path) {
     PlaceMapper const mapper(scene, places, path);
-    size_t const count = places.faces.size();
-    std::vector<DomainPlace> domains(count);
-    for (size_t row = 0; row < count; ++row) {
+    std::vector<eval::SurfacePlace> located;
+    for (size_t row = 0; row < places.faces.size(); ++row) {
         Index const face = places.faces[row];
         if (face < 0 || face >= surface.GetNumFaces()) {
             throw Error(ErrorCode::BadMesh, fmt::format("{}: row {} (line {}): face {} does not exist; faces are 0 to {}", path,
                                                         row, places.lines[row], face, surface.GetNumFaces() - 1));
         }
-        domains[row] = mapper.Map(row, scene.cage.faceSizes[face]);
+        located.push_back(mapper.Map(row, scene.cage.faceSizes[face]));
     }
-    std::vector<eval::SurfaceSample> samples(count);
-    tbb::enumerable_thread_specific<eval::FaceTree> trees([&] { return eval::FaceTree(surface, scene.positions, 3); });
-    double const orientation = isLeftHanded ? -1.0 : 1.0;
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 256), [&](auto const& range) {
-        CheckInterrupted();
-        eval::FaceTree& tree = trees.local();
-        Index bound = -1;
-        for (size_t row = range.begin(); row != range.end(); ++row) {
-            Index const face = places.faces[row];
-            if (!surface.HasLimit(face)) continue;
-            if (face != bound) tree.Bind(face);
-            bound = face;
-            samples[row] = eval::EvaluateSample(tree, domains[row].domain, domains[row].s, domains[row].t, orientation);
-        }
-    });
+    return located;
+}
+
+std::string FormatSamples(PlaceList const& places, eval::LimitSurface const& surface,
+                          std::vector<eval::SurfaceSample> const& samples, bool isDouble) {
     std::string text = "face,s,t,px,py,pz,nx,ny,nz,mean,gaussian,k1,k2,d1x,d1y,d1z\n";
-    numWithout = 0;
     int const digits = isDouble ? 17 : 9;
-    for (size_t row = 0; row < count; ++row) {
+    for (size_t row = 0; row < samples.size(); ++row) {
         fmt::format_to(std::back_inserter(text), "{},{},{}", places.faces[row], places.s[row], places.t[row]);
         bool const hasLimit = surface.HasLimit(places.faces[row]);
-        numWithout += !hasLimit;
         auto const& x = samples[row];
         auto const& c = x.curvature;
         double const values[] = {x.position[0], x.position[1], x.position[2], x.normal[0],    x.normal[1],
@@ -186,6 +165,35 @@ std::string EvaluatePlaces(Scene const& scene, Far::TopologyRefiner const& refin
         text += '\n';
     }
     return text;
+}
+
+size_t CountWithoutLimit(PlaceList const& places, eval::LimitSurface const& surface) {
+    auto const count = std::count_if(places.faces.begin(), places.faces.end(),
+                                     [&](Index face) { return !surface.HasLimit(face); });
+    return static_cast<size_t>(count);
+}
+
+std::string EvaluatePlaces(Scene const& scene, Far::TopologyRefiner const& refiner, PlaceList const& places, std::string const& path, bool isLeftHanded,
+                           bool isDouble, size_t& numWithout) {
+    eval::LimitSurface const surface(refiner);
+    auto const located = LocatePlaces(scene, surface, places, path);
+    std::vector<eval::SurfaceSample> samples(located.size());
+    tbb::enumerable_thread_specific<eval::FaceTree> trees([&] { return eval::FaceTree(surface, scene.positions, 3); });
+    double const orientation = isLeftHanded ? -1.0 : 1.0;
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, located.size(), 256), [&](auto const& range) {
+        CheckInterrupted();
+        eval::FaceTree& tree = trees.local();
+        Index bound = -1;
+        for (size_t row = range.begin(); row != range.end(); ++row) {
+            auto const& place = located[row];
+            if (!surface.HasLimit(place.face)) continue;
+            if (place.face != bound) tree.Bind(place.face);
+            bound = place.face;
+            samples[row] = eval::EvaluateSample(tree, place.domain, place.s, place.t, orientation);
+        }
+    });
+    numWithout = CountWithoutLimit(places, surface);
+    return FormatSamples(places, surface, samples, isDouble);
 }
 
 }  // namespace limn::engine

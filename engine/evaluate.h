@@ -6,6 +6,7 @@
 #include <opensubdiv/far/topologyRefiner.h>
 
 #include "engine/scene.h"
+#include "eval/place_stencils.h"
 
 namespace limn::engine {
 
@@ -19,6 +20,22 @@ struct PlaceList {
 
 /// Reads `face,s,t` lines with a header. \throws Error BadMesh, as "FILE:LINE: ..."; Io
 PlaceList ReadPlaces(std::string const& path);
+
+/// The domains of a surface that listed places lie in.
+///
+/// \param path    of the list, for messages
+/// \throws Error  BadMesh: a face that does not exist, a place outside its domain (row named)
+std::vector<eval::SurfacePlace> LocatePlaces(Scene const& scene, eval::LimitSurface const& surface,
+                                             PlaceList const& places, std::string const& path);
+
+/// CSV text of samples, one row per place in the order given; nan where the face has no limit surface.
+///
+/// \param isDouble  17 significant digits rather than 9
+std::string FormatSamples(PlaceList const& places, eval::LimitSurface const& surface,
+                          std::vector<eval::SurfaceSample> const& samples, bool isDouble);
+
+/// Number of places whose face has no limit surface.
+size_t CountWithoutLimit(PlaceList const& places, eval::LimitSurface const& surface);
 
 /// Evaluates places in double and returns CSV text, one row per place in the order given.
 ///

@@ -173,19 +173,22 @@ int FaceTree::AddNode(RingNode const* ring, size_t numPoints) {
     return static_cast<int>(_nodes.size()) - 1;
 }
 
-void FaceTree::Bind(Index face) {
+void FaceTree::GatherPoints(Index face) {
     _face = face;
     _nodes.clear();
     _children.clear();
     _values.assign(1, 0.0);
-    RingNode const* const ring = _surface._ringOfFace[face];
-    if (ring) {
+    if (_surface._ringOfFace[face]) {
         _gatherer.GatherPoints(face, _points);
     } else {
         _points.resize(_isLoop ? 12 : 16);
         _surface.GatherPlainPoints(face, _points.data());
     }
-    AddNode(ring, _points.size());
+}
+
+void FaceTree::Bind(Index face) {
+    GatherPoints(face);
+    AddNode(_surface._ringOfFace[face], _points.size());
     double* to = &_values[_nodes[0].points];
     for (Index point : _points) {
         for (Values const& part : _parts) {
@@ -193,6 +196,14 @@ void FaceTree::Bind(Index face) {
             to = std::copy(from, from + part.length, to);
         }
     }
+    Recentre(_nodes[0], nullptr);
+}
+
+void FaceTree::BindWeights(Index face) {
+    GatherPoints(face);
+    _length = static_cast<int>(_points.size());
+    AddNode(_surface._ringOfFace[face], _points.size());
+    for (size_t i = 0; i < _points.size(); ++i) _values[_nodes[0].points + i * _points.size() + i] = 1.0;
     Recentre(_nodes[0], nullptr);
 }
 

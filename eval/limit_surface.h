@@ -100,6 +100,11 @@ public:
     /// Makes `face` (with HasLimit) the current one.
     void Bind(Index face);
 
+    /// Makes `face` the current one with weights for values: channel c is the weight of the vertex (or
+    /// fvar value) that GetPoints names at c, and there are as many channels as points.
+    void BindWeights(Index face);
+    std::vector<Index> const& GetPoints() const { return _points; }
+
     /// The piece that holds (s,t) of a domain of the current face. Valid until the next Bind.
     PatchPoint Locate(int domain, double s, double t, int maxDepth);
 
@@ -137,6 +142,7 @@ private:
         far_ext::SubDomain domain;       // of the domain it belongs to
     };
 
+    void GatherPoints(Index face);
     int AddNode(RingNode const* ring, size_t numPoints);
     void Recentre(Node& node, double const* parentOrigin);
     void MakeCoefficients(Node& node);

@@ -20,28 +20,26 @@ std::array<double, 6> EvaluatePolynomial(FaceTree const& tree, PatchPoint const&
 SurfaceDerivatives Evaluate(FaceTree const& tree, PatchPoint const& at) {
     SurfaceDerivatives d;
     for (int c = 0; c < 3; ++c) {
-        auto const v = EvaluatePolynomial(tree, at, c);
-        double const one = at.scale, two = one * one;
-        d.position[c] = at.origin[c] + v[0];
-        d.ds[c] = v[1] * one;
-        d.dt[c] = v[2] * one;
-        d.dss[c] = v[3] * two;
-        d.dst[c] = v[4] * two;
-        d.dtt[c] = v[5] * two;
+        auto const v = EvaluateDerivatives(tree, at, c);
+        d.position[c] = v[0];
+        d.ds[c] = v[1];
+        d.dt[c] = v[2];
+        d.dss[c] = v[3];
+        d.dst[c] = v[4];
+        d.dtt[c] = v[5];
     }
     return d;
-}
-
-/// Rounding leaves about 1e-15 of each product; below 1e-12 the cross product says nothing.
-bool HasTangentPlane(SurfaceDerivatives const& d) {
-    double const ss = d.ds.squaredNorm(), tt = d.dt.squaredNorm();
-    return d.ds.cross(d.dt).squaredNorm() > 1e-24 * ss * tt && ss > 0.0 && tt > 0.0;
 }
 
 }  // namespace
 
 SurfaceDerivatives EvaluateDerivatives(FaceTree& tree, int domain, double s, double t) {
     return Evaluate(tree, tree.Locate(domain, s, t, FaceTree::kLimitDepth));
+}
+
+bool HasTangentPlane(SurfaceDerivatives const& d, double leastSine) {
+    double const ss = d.ds.squaredNorm(), tt = d.dt.squaredNorm();
+    return d.ds.cross(d.dt).squaredNorm() > leastSine * leastSine * ss * tt && ss > 0.0 && tt > 0.0;
 }
 
 Curvature ComputeCurvature(Eigen::Vector3d const& ds, Eigen::Vector3d const& dt,
@@ -71,6 +69,22 @@ Curvature ComputeCurvature(Eigen::Vector3d const& ds, Eigen::Vector3d const& dt,
         curvature.direction = along * a1 + (s < 0.0 ? -across : across) * a2;
     }
     return curvature;
+}
+
+std::array<double, 6> EvaluateDerivatives(FaceTree const& tree, PatchPoint const& at, int channel) {
+    auto const v = EvaluatePolynomial(tree, at, channel);
+    double const one = at.scale, two = one * one;
+    return {at.origin[channel] + v[0], v[1] * one, v[2] * one, v[3] * two, v[4] * two, v[5] * two};
+}
+
+SurfaceSample MakeSample(SurfaceDerivatives const& d, double orientation) {
+    SurfaceSample sample;
+    sample.position = d.position;
+    sample.tangentS = d.ds;
+    sample.tangentT = d.dt;
+    sample.normal = orientation * d.ds.cross(d.dt).normalized();
+    sample.curvature = ComputeCurvature(d.ds, d.dt, d.dss, d.dst, d.dtt, orientation);
+    return sample;
 }
 
 SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t, double orientation) {

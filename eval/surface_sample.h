@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -38,6 +40,16 @@ SurfaceDerivatives EvaluateDerivatives(FaceTree& tree, int domain, double s, dou
 Curvature ComputeCurvature(Eigen::Vector3d const& ds, Eigen::Vector3d const& dt,
                            Eigen::Vector3d const& dss, Eigen::Vector3d const& dst,
                            Eigen::Vector3d const& dtt, double orientation);
+
+/// True if the tangents span a plane: neither is zero, and the sine of their angle is above a bound.
+/// Rounding leaves about 1e-15 of each product in their cross product; below 1e-12 it says nothing.
+bool HasTangentPlane(SurfaceDerivatives const& derivatives, double leastSine = 1e-12);
+
+/// The sample that derivatives make. \pre HasTangentPlane
+SurfaceSample MakeSample(SurfaceDerivatives const& derivatives, double orientation);
+
+/// Value and derivatives of one channel of a piece: P, Ps, Pt, Pss, Pst, Ptt by (s,t) of the domain.
+std::array<double, 6> EvaluateDerivatives(FaceTree const& tree, PatchPoint const& at, int channel);
 
 /// Evaluates one place of the tree's current face; its first three channels are the position.
 ///

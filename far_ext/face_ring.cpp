@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <utility>
 
 #include <opensubdiv/far/topologyRefinerFactory.h>
 
@@ -22,8 +23,8 @@ size_t FaceRing::Hash() const {
     return static_cast<size_t>(hash ^ (hash >> 32));
 }
 
-FaceRingGatherer::FaceRingGatherer(Far::TopologyLevel const& level, int channel)
-    : _level(level), _channel(channel) {
+FaceRingGatherer::FaceRingGatherer(Far::TopologyLevel const& level, int channel, Starts starts)
+    : _level(level), _channel(channel), _starts(starts) {
     _faces.Resize(level.GetNumFaces());
     _vertices.Resize(level.GetNumVertices());
     _edges.Resize(level.GetNumEdges());
@@ -39,6 +40,17 @@ void FaceRingGatherer::NumberFaces(Index face) {
     }
 }
 
+/// The corner a face of the ring starts with.
+int FaceRingGatherer::FindStart(Far::ConstIndexArray vertices) const {
+    if (_starts == Starts::AsInLevel) return 0;
+    int start = 0;
+    auto const rank = [&](int corner) { return static_cast<unsigned>(_vertices[vertices[corner]]); };  // -1 last
+    for (int i = 1; i < vertices.size(); ++i) {
+        if (rank(i) < rank(start)) start = i;
+    }
+    return start;
+}
+
 void FaceRingGatherer::GatherPoints(Index face, std::vector<Index>& points) {
     NumberFaces(face);
     Numbering& numbering = _channel >= 0 ? _values : _vertices;
@@ -52,8 +64,9 @@ void FaceRingGatherer::GatherPoints(Index face, std::vector<Index>& points) {
     _faces.Reset();
 }
 
-FaceRing::Corner FaceRingGatherer::MakeCorner(Index vertex, Index face) const {
-    FaceRing::Corner corner;
+void FaceRingGatherer::MakeCorner(Index vertex, Index face, FaceRing::Corner& corner) const {
+    corner.faces.clear();
+    corner.edges.clear();
     corner.sharpness = _level.GetVertexSharpness(vertex);
     corner.isNonManifold = _level.IsVertexNonManifold(vertex);
     for (Index around : _level.GetVertexFaces(vertex)) corner.faces.push_back(_faces[around]);
@@ -65,21 +78,26 @@ FaceRing::Corner FaceRingGatherer::MakeCorner(Index vertex, Index face) const {
                     corner.edges.end());
         std::rotate(corner.faces.begin(), start, corner.faces.end());
     }
-    return corner;
 }
 
 void FaceRingGatherer::Gather(Index face, FaceRing& ring, std::vector<Index>& points) {
-    ring = FaceRing{};
+    // A ring that is used again keeps its memory.
+    for (auto* list : {&ring.faceVertices, &ring.faceEdges, &ring.valueIndices}) list->clear();
+    ring.faceSizes.clear();
+    ring.edges.clear();
+    ring.corners.resize(static_cast<size_t>(_level.GetFaceVertices(face).size()));
     NumberFaces(face);
     for (Index inRing : _faces.GetMembers()) {
         auto const vertices = _level.GetFaceVertices(inRing);
-        ring.faceSizes.push_back(vertices.size());
-        for (Index vertex : vertices) ring.faceVertices.push_back(_vertices.Add(vertex));
-        for (Index edge : _level.GetFaceEdges(inRing)) ring.faceEdges.push_back(_edges.Add(edge));
-        if (_channel < 0) continue;
-        for (Index value : _level.GetFaceFVarValues(inRing, _channel)) {
-            ring.valueIndices.push_back(_values.Add(value));
-        }
+        int const size = vertices.size(), start = inRing == face ? 0 : FindStart(vertices);
+        auto const add = [&](auto const& members, Numbering& numbering, std::vector<Index>& list) {
+            for (int i = start; i < size; ++i) list.push_back(numbering.Add(members[i]));
+            for (int i = 0; i < start; ++i) list.push_back(numbering.Add(members[i]));
+        };
+        ring.faceSizes.push_back(size);
+        add(vertices, _vertices, ring.faceVertices);
+        add(_level.GetFaceEdges(inRing), _edges, ring.faceEdges);
+        if (_channel >= 0) add(_level.GetFaceFVarValues(inRing, _channel), _values, ring.valueIndices);
     }
     ring.numVertices = static_cast<Index>(_vertices.GetMembers().size());
     points = (_channel >= 0 ? _values : _vertices).GetMembers();
@@ -87,10 +105,13 @@ void FaceRingGatherer::Gather(Index face, FaceRing& ring, std::vector<Index>& po
 
     for (Index edge : _edges.GetMembers()) {
         auto const ends = _level.GetEdgeVertices(edge);
-        ring.edges.push_back({{_vertices[ends[0]], _vertices[ends[1]]}});
+        Index a = _vertices[ends[0]], b = _vertices[ends[1]];
+        if (_starts == Starts::Canonical && a > b) std::swap(a, b);
+        ring.edges.push_back({{a, b}});
     }
+    auto corner = ring.corners.begin();
     for (Index vertex : _level.GetFaceVertices(face)) {
-        ring.corners.push_back(MakeCorner(vertex, face));
+        MakeCorner(vertex, face, *corner++);
         for (Index edge : _level.GetVertexEdges(vertex)) {
             FaceRing::Edge& local = ring.edges[_edges[edge]];
             local.sharpness = _level.GetEdgeSharpness(edge);

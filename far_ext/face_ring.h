@@ -53,14 +53,19 @@ struct FaceRing {
 /// Collects rings from one level. Keeps scratch of the level's size: one per thread and level.
 class FaceRingGatherer {
 public:
+    /// With which corner the faces round the face start, and which way edges point: as in the level; or
+    /// with the corner numbered first, and to the higher number, so that rings which differ in nothing else
+    /// become equal. (Sums over a ring's points are then taken in another order.)
+    enum class Starts { AsInLevel, Canonical };
+
     /// \param level    topology with all relations (a base level, or a refined one asked for them)
     /// \param channel  face-varying channel, or -1 for vertices
-    FaceRingGatherer(Far::TopologyLevel const& level, int channel);
+    FaceRingGatherer(Far::TopologyLevel const& level, int channel, Starts starts = Starts::AsInLevel);
 
     /// The ring of a face, and for each of its points the level's vertex (or value) index.
     void Gather(Index face, FaceRing& ring, std::vector<Index>& points);
 
-    /// Only the points, in the order Gather gives them.
+    /// Only the points, in the order Gather gives them. \pre Starts::AsInLevel
     void GatherPoints(Index face, std::vector<Index>& points);
 
 private:
@@ -75,7 +80,7 @@ private:
             }
             return _local[index];
         }
-        Index operator[](Index index) const { return _local[index]; }
+        Index operator[](Index index) const { return _local[index]; }  ///< -1: not numbered
         std::vector<Index> const& GetMembers() const { return _members; }
         void Reset() {
             for (Index index : _members) _local[index] = -1;
@@ -87,10 +92,12 @@ private:
     };
 
     void NumberFaces(Index face);
-    FaceRing::Corner MakeCorner(Index vertex, Index face) const;
+    int FindStart(Far::ConstIndexArray vertices) const;
+    void MakeCorner(Index vertex, Index face, FaceRing::Corner& corner) const;
 
     Far::TopologyLevel _level;  // a view
     int _channel;
+    Starts _starts;
     Numbering _faces, _vertices, _edges, _values;
 };
 

@@ -44,7 +44,7 @@ void RoundToPortableWeights(WeightRow& row) {
     row = rounded;
 }
 
-std::vector<WeightRow> RefineIdentity(FaceRing const& ring, Far::TopologyRefiner const& refiner) {
+std::vector<WeightRow> RefineIdentity(FaceRing const& ring, Far::TopologyRefiner const& refiner, bool isVarying) {
     Far::PrimvarRefinerReal<double> const primvars(refiner);
     Level const fine = refiner.GetLevel(1);
     auto const coarseRows = WeightRow::Identity(ring.numPoints);
@@ -54,7 +54,7 @@ std::vector<WeightRow> RefineIdentity(FaceRing const& ring, Far::TopologyRefiner
         primvars.InterpolateFaceVarying(1, coarseRows, rows, 0);
     } else {
         rows.resize(static_cast<size_t>(fine.GetNumVertices()));
-        primvars.Interpolate(1, coarseRows, rows);
+        isVarying ? primvars.InterpolateVarying(1, coarseRows, rows) : primvars.Interpolate(1, coarseRows, rows);
     }
     if (refiner.GetSchemeType() == Sdc::SCHEME_LOOP) {
         for (WeightRow& row : rows) RoundToPortableWeights(row);
@@ -402,16 +402,20 @@ std::vector<Index> FindSupport(FaceRing const& ring) {
 }  // namespace
 
 RingSubdivision RingSubdivision::Build(FaceRing const& ring, Sdc::SchemeType scheme,
-                                       Sdc::Options options) {
+                                       Sdc::Options options, Use use) {
     auto const refiner = RefineOnce(ring, scheme, options);
-    auto const fineRows = RefineIdentity(ring, *refiner);
+    auto const fineRows = RefineIdentity(ring, *refiner, use == Use::VaryingRefinement);
     RingSubdivision result;
-    result.support = FindSupport(ring);
-    result.patch = PatchFinder(ring, *refiner, fineRows).Find();
-    if (result.IsRegular()) return result;
+    if (use == Use::Limit) {
+        result.support = FindSupport(ring);
+        result.patch = PatchFinder(ring, *refiner, fineRows).Find();
+        if (result.IsRegular()) return result;
+    }
 
     Level const coarse = refiner->GetLevel(0), fine = refiner->GetLevel(1);
-    FaceRingGatherer gatherer(fine, ring.IsFaceVarying() ? 0 : -1);
+    using Starts = FaceRingGatherer::Starts;
+    FaceRingGatherer gatherer(fine, ring.IsFaceVarying() ? 0 : -1,
+                              use == Use::Limit ? Starts::AsInLevel : Starts::Canonical);
     bool const isSplitInSubFaces = scheme != Sdc::SCHEME_LOOP && ring.faceSizes[0] != 4;
     std::vector<Index> points;
     for (Index childFace : coarse.GetFaceChildFaces(0)) {

@@ -43,7 +43,12 @@ struct RingSubdivision {
 
     bool IsRegular() const { return patch.GetNumRows() != 0; }
 
-    static RingSubdivision Build(FaceRing const& ring, Sdc::SchemeType scheme, Sdc::Options options);
+    /// What a ring is subdivided for: its limit; or its refined points, vertex by vertex or with
+    /// OpenSubdiv's varying (linear) rule, where every ring has children and no patch.
+    enum class Use { Limit, Refinement, VaryingRefinement };
+
+    static RingSubdivision Build(FaceRing const& ring, Sdc::SchemeType scheme, Sdc::Options options,
+                                 Use use = Use::Limit);
 };
 
 /// Positions of the box spline's 12 control points; the triangle is (0,0), (1,0), (0,1), lattice

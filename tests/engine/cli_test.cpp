@@ -155,7 +155,12 @@ INSTANTIATE_TEST_SUITE_P(
                     Usage{"LevelsEleven", {"refine", "MESH", "-o", "OUT/a.obj", "--levels", "11"}, "--levels"},
                     Usage{"UnknownEnding", {"refine", "MESH", "-o", "OUT/a.stl"}, ".obj or .ply"},
                     Usage{"InfoAndReportOnStdout", {"info", "MESH", "--report", "-"}, "--report"},
-                    Usage{"EvalAndReportOnStdout", {"eval", "MESH", "--at", "OUT/p.csv", "--report", "-"}, "--report"}),
+                    Usage{"EvalAndReportOnStdout", {"eval", "MESH", "--at", "OUT/p.csv", "--report", "-"}, "--report"},
+                    Usage{"FramesWithoutOutput", {"eval", "MESH", "--at", "OUT/p.csv", "--frames", "OUT"}, "--output"},
+                    Usage{"EvaluatorWithoutFrames", {"eval", "MESH", "--at", "OUT/p.csv", "--evaluator", "simd"}, "--frames"},
+                    Usage{"UnknownEvaluator",
+                          {"eval", "MESH", "--at", "OUT/p.csv", "--frames", "OUT", "-o", "OUT/{frame}.csv", "--evaluator", "gpu"},
+                          "gpu"}),
     [](testing::TestParamInfo<Usage> const& instance) { return instance.param.name; });
 
 TEST_F(Cli, UnknownGroupListsTheGroupsThereAre) {
@@ -807,6 +812,50 @@ TEST_F(Eval, HeaderThatLacksAColumnIsRefused) {
     for (std::string const text : {"", "face,s\n0,0\n", "0,0.5,0.5\n"}) {
         ExpectError(Limn({"eval", Shape("catmark_cube"), "--at", folder.Write("q.csv", text)}), 3);
     }
+}
+
+TEST_F(Eval, FramesGoToFilesOfTheirOwn) {
+    std::string const cube = Shape("catmark_cube"), csv = folder.Write("p.csv", "face,s,t\n0,0.5,0.5\n5,0.1,0.2\n");
+    for (char const* name : {"cube.9.obj", "cube.10.obj"}) folder.Write(name, test::ReadText(cube));
+    Words words{"eval", cube, "--at", csv, "--frames", folder / "cube.{frame}.obj", "-o", folder / "{frame}.csv"};
+    auto const with = [&](Words const& more) {
+        Words all = words;
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    };
+    std::string const alone = Limn({"eval", cube, "--at", csv}).out;
+    for (Words const& more : {Words{}, {"--evaluator", "simd"}, {"--evaluator", "osd-cpu"}, {"--evaluator", "osd-omp"}}) {
+        Outcome const outcome = Limn(with(more), {.environment = {"OMP_NUM_THREADS=2"}});
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_EQ(outcome.out, "");
+        for (char const* name : {"9.csv", "10.csv"}) {
+            auto const lines = Lines(test::ReadText(folder / name)), expected = Lines(alone);
+            ASSERT_EQ(lines.size(), 3u);
+            EXPECT_EQ(lines[0], expected[0]);
+            for (int column : {3, 4, 5, 6, 7, 8}) {
+                EXPECT_NEAR(std::stod(Fields(lines[2])[column]), std::stod(Fields(expected[2])[column]), 1e-6);
+            }
+        }
+    }
+    ASSERT_EQ(Limn(with({"--report", folder / "r.json"})).status, 0);
+    json const report = ReadJson(folder / "r.json");
+    EXPECT_EQ(report["frames"], 2);
+    EXPECT_EQ(report["places"], 2);
+    EXPECT_EQ(report["evaluator"], "double");
+    EXPECT_EQ(report["outputs"][0], folder / "9.csv");
+}
+
+TEST_F(Eval, FramesThatCannotBeAreRefused) {
+    std::string const cube = Shape("catmark_cube"), csv = folder.Write("p.csv", "face,s,t\n0,0.5,0.5\n");
+    auto const run = [&](std::string const& frames, std::string const& output) {
+        return Limn({"eval", cube, "--at", csv, "--frames", folder / frames, "-o", folder / output});
+    };
+    folder.Write("a.1.obj", test::ReadText(cube));
+    ExpectError(run("a.{frame}.obj", "a.csv"), 2);
+    ExpectError(run("b.{frame}.obj", "{frame}.csv"), 5);
+    folder.Write("a.2.obj", test::ReadText(Shape("catmark_pyramid")));
+    EXPECT_TRUE(Contains(ExpectError(run("a.{frame}.obj", "{frame}.csv"), 3), "a.2.obj"));
+    EXPECT_EQ(folder.List(), (Words{"a.1.obj", "a.2.obj", "p.csv"}));
 }
 
 // -------- info
