@@ -92,19 +92,31 @@ public:
         return std::sqrt(FindLargest(maxima));
     }
 
-    /// The first step of all: E = b R needs no A.
-    void StepFromZero(double b) {
-        float const fb = static_cast<float>(b);
+    /// The first step after Restart, which needs no A: E = 0.
+    void StepFromZero(double a, double b) {
+        float const fa = static_cast<float>(a), fb = static_cast<float>(b);
         ForEachChunk(_A.GetNumVertices(), [&](Index begin, Index end) {
             for (Index row = begin; row < end; ++row) {
-                Row().Store(_previous.data(), row);
-                (fb * Row::Load(_right.data(), row)).Store(_current.data(), row);
+                (fb * Row::Load(_right.data(), row) - fa * Row::Load(_previous.data(), row)).Store(_previous.data(), row);
+            }
+        });
+        std::swap(_current, _previous);
+    }
+
+    /// Hands E over, visit(row, E), and goes on from 0 with the same memory: E_k = 0, E_{k-1} less E_k.
+    template <class Visit>
+    void Restart(Visit const& visit) {
+        ForEachChunk(_A.GetNumVertices(), [&](Index begin, Index end) {
+            for (Index row = begin; row < end; ++row) {
+                Row const own = Row::Load(_current.data(), row);
+                visit(row, _current.data() + static_cast<size_t>(row) * kStride);
+                (Row::Load(_previous.data(), row) - own).Store(_previous.data(), row);
+                Row().Store(_current.data(), row);
             }
         });
     }
 
     float* GetRight() { return _right.data(); }
-    float const* Get() const { return _current.data(); }
     static constexpr size_t kStride = FloatRow<Lanes>::kStride;
 
 private:
@@ -121,10 +133,12 @@ public:
 
     void Restart() { _residuals.clear(); }
     void Add(double residual) { _residuals.push_back(residual); }
-    bool IsReady() const { return _residuals.size() > kWindow + 2; }
+    bool IsReady() const { return _residuals.size() > kWindow + 3; }
     double GetRate() const {
+        // A single mode swings through zero: the larger of two neighbours tells its size.
+        auto const at = [&](size_t k) { return std::max(_residuals[k], _residuals[k - 1]); };
         size_t const last = _residuals.size() - 1;
-        return std::pow(_residuals[last] / _residuals[last - kWindow], 1.0 / kWindow);
+        return std::pow(at(last) / at(last - kWindow), 1.0 / kWindow);
     }
 
 private:
@@ -187,42 +201,37 @@ private:
 
     void Correct(double start) {
         double const goal = std::max(0.9 * _problem.tolerance, kInnerGain * start);
-        RateWatch watch;
-        watch.Add(start);
-        _schedule.Restart(_schedule.GetLambda());
         double a, b;
         _schedule.Advance(a, b);
-        _correction.StepFromZero(b);
+        _correction.StepFromZero(a, b);
+        _watch.Add(start);
         while (!IsUsedUp()) {
             _schedule.Advance(a, b);
             double const residual = static_cast<double>(_correction.Step(a, b));
             Record(residual);
             if (residual <= goal || !(residual < 1e4 * start)) return;
-            watch.Add(residual);
-            if (_method == StationaryMethod::Chebyshev && watch.IsReady() && !LowerBound(watch)) return;
+            _watch.Add(residual);
+            if (_method == StationaryMethod::Chebyshev && _watch.IsReady() && !LowerBound()) return;
         }
     }
 
     /// Lowers the bound where modes below it hold convergence up. Returns false where that goes too far.
-    bool LowerBound(RateWatch& watch) {
-        double const rate = watch.GetRate();
+    bool LowerBound() {
+        double const rate = _watch.GetRate();
         if (rate < std::sqrt(_schedule.GetExpectedRate())) return true;  // half as fast as hoped is still well
         // The slowest mode's eigenvalue, and some room: an underestimate costs little, an overestimate much.
         double const bound = std::min(0.8 * _schedule.FindEigenvalue(rate), 0.8 * _schedule.GetLambda());
         _result.isStuck = !(bound > _smallest);
         if (_result.isStuck) return false;
         _schedule.Restart(bound);
-        watch.Restart();
+        _watch.Restart();
         return true;
     }
 
     void AddCorrection() {
-        ForEachChunk(_problem.A.GetNumVertices(), [&](Index begin, Index end) {
-            for (Index row = begin; row < end; ++row) {
-                size_t const at = static_cast<size_t>(row);
-                float const* const e = _correction.Get() + at * _correction.kStride;
-                for (size_t i = 0; i < Length; ++i) _problem.solution[at * Length + i] += _problem.size * static_cast<double>(e[i]);
-            }
+        _correction.Restart([&](Index row, float const* e) {
+            double* const p = _problem.solution + static_cast<size_t>(row) * Length;
+            for (size_t i = 0; i < Length; ++i) p[i] += _problem.size * static_cast<double>(e[i]);
         });
     }
 
@@ -231,6 +240,7 @@ private:
     Schedule _schedule;
     double _smallest;
     Correction<kLanes> _correction;
+    RateWatch _watch;
     IterationResult _result;
 };
 
