@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eval/decompose.h"
 #include "far_ext/error.h"
 
 namespace limn::eval {
@@ -32,10 +33,7 @@ void Validate(LimitOperator const& A, std::span<double const> M, int length, std
     }
     if (!(options.tolerance > 0.0)) throw Error(ErrorCode::BadOption, "interpolation: the tolerance must be above 0");
     if (options.maxIterations < 1) throw Error(ErrorCode::BadOption, "interpolation: at least one iteration is needed");
-    auto const bad = std::find_if(M.begin(), M.end(), [](double x) { return !std::isfinite(x); });
-    if (bad == M.end()) return;
-    throw Error(ErrorCode::BadMesh, "vertex " + std::to_string((bad - M.begin()) / length) +
-                                        " has a value that is not a finite number; nothing can be fitted to it");
+    RequireFinite(M, length);
 }
 
 /// Numbers without pattern, the same everywhere.

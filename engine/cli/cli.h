@@ -78,8 +78,12 @@ struct Verb {
 Verb AddInfo(CLI::App& app);
 Verb AddEval(CLI::App& app);
 Verb AddBake(CLI::App& app);
+Verb AddBands(CLI::App& app);
+Verb AddDenoise(CLI::App& app);
 Verb AddFit(CLI::App& app);
+Verb AddMorph(CLI::App& app);
 Verb AddRefine(CLI::App& app);
+Verb AddSharpen(CLI::App& app);
 
 /// Exit statuses that are not failures of the program.
 inline constexpr int kDone = 0, kNotReached = 4;
