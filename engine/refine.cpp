@@ -7,9 +7,8 @@
 #include <fmt/format.h>
 
 #include "engine/job.h"
-#include "eval/face_places.h"
 #include "eval/refine_values.h"
-#include "eval/surface_sample.h"
+#include "eval/vertex_limits.h"
 #include "far_ext/error.h"
 #include "far_ext/refined_cage.h"
 #include "far_ext/refiner.h"
@@ -56,32 +55,11 @@ std::vector<Index> FindBaseFaces(Far::TopologyRefiner const& refiner) {
     return base;
 }
 
-/// Moves refined vertices to the limit: each vertex is a corner of one of its faces, evaluated there.
-/// Vertices without a face that has a limit stay.
+/// Moves refined vertices to the limit. Vertices without a face that has one stay.
 void MoveToLimit(Scene& fine) {
     auto const refiner = far_ext::CreateRefiner(fine.cage);
     eval::LimitSurface const surface(*refiner);
-    std::vector<double> const control = fine.positions;
-    eval::FaceTree tree(surface, control, 3);
-    std::vector<char> isDone(static_cast<size_t>(fine.cage.numVertices), 0);
-    Level const level = refiner->GetLevel(0);
-    for (Index face = 0; face < surface.GetNumFaces(); ++face) {
-        if (!surface.HasLimit(face)) continue;
-        CheckInterrupted();
-        bool isBound = false;
-        auto const vertices = level.GetFaceVertices(face);
-        for (int corner = 0; corner < vertices.size(); ++corner) {
-            if (isDone[vertices[corner]]) continue;
-            if (!isBound) tree.Bind(face);
-            isBound = true;
-            auto const place = eval::GetCornerPlace(surface, face, corner);
-            for (int c = 0; c < 3; ++c) {
-                fine.positions[3 * static_cast<size_t>(vertices[corner]) + static_cast<size_t>(c)] =
-                    eval::EvaluateChannel(tree, place.domain, place.s, place.t, c);
-            }
-            isDone[vertices[corner]] = 1;
-        }
-    }
+    fine.positions = eval::EvaluateVertexLimits(surface, fine.positions, 3, eval::FaceTree::kLimitDepth, CheckInterrupted).values;
 }
 
 }  // namespace

@@ -53,14 +53,18 @@ public:
     }
 
 private:
+    using Row = DoubleRow<Length>;
+
     static size_t At(Index row) { return static_cast<size_t>(row) * Length; }
 
     /// r = M - A P, p = r, and <r, r>. Returns max |r|.
     double Start() {
         return Sum([&](Index begin, Index end, Partial& partial) {
-            _problem.A.ForEachRow<Length>(begin, end, Stage::Rest, _problem.solution, [&](Index row, auto const& c, double const* limit) {
-                for (size_t i = 0; i < Length; ++i) _r[At(row) + i] = _p[At(row) + i] = _problem.data[At(row) + i] - limit[i];
-                partial.Add(&_r[At(row)], c.scale);
+            _problem.A.ForEachRow<Row>(begin, end, Stage::Rest, _problem.solution, [&](Index row, auto const& c, Row const&, Row const& limit) {
+                Row const residual = Row::Load(_problem.data, row) - limit;
+                residual.Store(_r.data(), row);
+                residual.Store(_p.data(), row);
+                partial.Add(residual, c.scale);
             });
         });
     }
@@ -69,11 +73,9 @@ private:
     Sums<Length> Apply() {
         auto const partials = MapChunks(_count, [&](Index begin, Index end) {
             Sums<Length> sum{};
-            _problem.A.ForEachRow<Length>(begin, end, Stage::Rest, _p.data(), [&](Index row, auto const& c, double const* product) {
-                for (size_t i = 0; i < Length; ++i) {
-                    _q[At(row) + i] = product[i];
-                    sum[i] += c.scale * _p[At(row) + i] * product[i];
-                }
+            _problem.A.ForEachRow<Row>(begin, end, Stage::Rest, _p.data(), [&](Index row, auto const& c, Row const& own, Row const& product) {
+                product.Store(_q.data(), row);
+                for (size_t i = 0; i < Length; ++i) sum[i] += c.scale * own.values[i] * product.values[i];
             });
             return sum;
         });
@@ -94,7 +96,7 @@ private:
                     _problem.solution[At(row) + i] += alpha[i] * _p[At(row) + i];
                     _r[At(row) + i] -= alpha[i] * _q[At(row) + i];
                 }
-                partial.Add(&_r[At(row)], c.scale);
+                partial.Add(Row::Load(_r.data(), row), c.scale);
             }
         });
     }
@@ -110,12 +112,9 @@ private:
         Sums<Length> square{};
         double largest = 0.0;
 
-        void Add(double const* r, double scale) {
-            double length = 0.0;
-            for (size_t i = 0; i < Length; ++i) {
-                square[i] += scale * r[i] * r[i];
-                length += r[i] * r[i];
-            }
+        void Add(Row const& r, double scale) {
+            for (size_t i = 0; i < Length; ++i) square[i] += scale * r.values[i] * r.values[i];
+            double const length = r.SquaredLength();
             largest = length <= largest ? largest : length;
         }
     };

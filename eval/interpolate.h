@@ -34,9 +34,9 @@ struct SingularReport {
 /// How a solve went. Not converging is an answer: the solution is then the best there is.
 struct SolveReport {
     SolveMethod method = SolveMethod::Automatic;  ///< the last one used
-    int iterations = 0;           ///< applications of A, all channels at once; a factorisation counts as one
-    double residual = 0.0;        ///< max |M - A P| over the diagonal, recomputed at the end
-    Index worstVertex = -1;       ///< where that is
+    int iterations = 0;           ///< applications of A, all channels at once
+    double residual = 0.0;        ///< max |M - A P| over the diagonal, in double
+    Index worstVertex = -1;       ///< where that is, if the solve did not converge
     std::vector<double> history;  ///< residual at each application
     bool converged = false;
     double lambdaMin = 0.0;       ///< lower bound used or smallest eigenvalue found; 0: none was needed
@@ -64,10 +64,11 @@ public:
     SolveReport Solve(std::span<double const> M, int length, std::span<double> P, InterpolateOptions const& options = {}) const;
 
     /// Smallest eigenvalue of A (of its rest, see LimitOperator) from some steps of Lanczos' method: from above,
-    /// within a few percent. 1 where there is no rest.
+    /// within a few percent, alternating modes of singular components aside. 1 where there is no rest.
     double EstimateSmallestEigenvalue(int steps = 40) const;
 
 private:
+    double ChooseLambda(InterpolateOptions const& options) const;
     SolveReport SolveBlock(LimitProblem& problem, InterpolateOptions const& options) const;
     IterationResult Run(LimitProblem const& problem, InterpolateOptions const& options, SolveMethod& used) const;
 

@@ -130,9 +130,9 @@ LimitOperator LimitOperator::Build(Far::TopologyRefiner const& refiner, int leve
 void LimitOperator::Apply(std::span<double const> x, int length, std::span<double> y) const {
     WithLength(length, [&]<int Length>() {
         ForEachChunk(GetNumVertices(), [&](Index begin, Index end) {
-            ForEachRow<Length>(begin, end, Stage::Fixed, x.data(), [&](Index row, RowClass const&, double const* limit) {
-                std::copy_n(limit, Length, y.data() + static_cast<size_t>(row) * Length);
-            });
+            using Row = DoubleRow<Length>;
+            ForEachRow<Row>(begin, end, Stage::Fixed, x.data(),
+                            [&](Index row, RowClass const&, Row const&, Row const& limit) { limit.Store(y.data(), row); });
         });
     });
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "eval/chunks.h"
+#include "eval/value_row.h"
 #include "far_ext/limit_row.h"
 
 namespace limn::eval {
@@ -56,10 +57,10 @@ public:
     /// y = A x, for rows of `length` doubles. \pre x and y do not overlap
     void Apply(std::span<double const> x, int length, std::span<double> y) const;
 
-    /// Calls visit(row, class, y) with y = (A x)[row], Length doubles, for the rows of a range whose stage is
-    /// `first` or later.
-    template <int Length, class Visit>
-    void ForEachRow(Index begin, Index end, Stage first, double const* x, Visit visit) const;
+    /// Calls visit(row, class, own, y) with y = (A x)[row] and own = x[row] for the rows of a range whose stage
+    /// is `first` or later. Row is one of the types of value_row.h.
+    template <class Row, class Visit>
+    void ForEachRow(Index begin, Index end, Stage first, typename Row::Scalar const* x, Visit visit) const;
 
     /// Calls visit(column, weight) for the entries of a row, the diagonal first; a column may come twice.
     template <class Visit>
@@ -81,36 +82,27 @@ private:
     bool _isSymmetric = true;
 };
 
-template <int Length, class Visit>
-void LimitOperator::ForEachRow(Index begin, Index end, Stage first, double const* x, Visit visit) const {
-    auto const at = [&](Index vertex) { return x + static_cast<size_t>(vertex) * Length; };
+template <class Row, class Visit>
+void LimitOperator::ForEachRow(Index begin, Index end, Stage first, typename Row::Scalar const* x, Visit visit) const {
+    using Scalar = typename Row::Scalar;
     for (Index row = begin; row < end; ++row) {
         RowClass const& c = GetClass(row);
         if (c.stage < first) continue;
-        int k = _starts[row];
-        int const stop = _starts[row + 1];
-        double const* const own = at(row);
-        double y[Length], edges[Length] = {}, others[Length] = {};
+        Index const* k = _indices.data() + _starts[row];
+        Index const* const stop = _indices.data() + _starts[row + 1];
+        Row const own = Row::Load(x, row);
         if (c.isExplicit) {
-            double const* weight = &_weights[static_cast<size_t>(_indices[k])];
-            for (int i = 0; i < Length; ++i) y[i] = *weight * own[i];
-            for (++k; k < stop; ++k) {
-                ++weight;
-                double const* const point = at(_indices[k]);
-                for (int i = 0; i < Length; ++i) y[i] += *weight * point[i];
-            }
-        } else {
-            for (int const middle = k + c.numEdges; k < middle; ++k) {
-                double const* const point = at(_indices[k]);
-                for (int i = 0; i < Length; ++i) edges[i] += point[i];
-            }
-            for (; k < stop; ++k) {
-                double const* const point = at(_indices[k]);
-                for (int i = 0; i < Length; ++i) others[i] += point[i];
-            }
-            for (int i = 0; i < Length; ++i) y[i] = c.centre * own[i] + c.edge * edges[i] + c.other * others[i];
+            double const* weight = _weights.data() + *k;
+            Row y = static_cast<Scalar>(*weight) * own;
+            for (++k; k < stop; ++k) y = y + static_cast<Scalar>(*++weight) * Row::Load(x, *k);
+            visit(row, c, own, y);
+            continue;
         }
-        visit(row, c, y);
+        Row edges, others;
+        for (Index const* const middle = k + c.numEdges; k < middle; ++k) edges = edges + Row::Load(x, *k);
+        for (; k < stop; ++k) others = others + Row::Load(x, *k);
+        visit(row, c, own,
+              static_cast<Scalar>(c.centre) * own + static_cast<Scalar>(c.edge) * edges + static_cast<Scalar>(c.other) * others);
     }
 }
 

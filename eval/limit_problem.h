@@ -36,9 +36,10 @@ struct IterationResult {
 /// max |M - A P| over the rest of the rows, in the unit `size`; `worst` receives where it is.
 double FindResidual(LimitProblem const& problem, Index* worst = nullptr);
 
-/// A fixed-point iteration with one memory: P_{k+1} = P_k + a (P_k - P_{k-1}) + b (M - A P_k). Each step is one
-/// pass over the rows that applies A, measures the residual and updates in place: nothing but P_k, P_{k-1}
-/// and M is read.
+/// A fixed-point iteration with one memory: P_{k+1} = P_k + a (P_k - P_{k-1}) + b (M - A P_k). A step is one
+/// pass over the rows that applies A, measures the residual and updates in place, in float: it finds a correction,
+/// which is added in double to P, whose residual is then found in double, until that is small enough. Half the
+/// memory and traffic of doubles, and all their digits.
 enum class StationaryMethod {
     Progressive,  ///< a = 0, b = 1: [LaiCheng11] (7)
     Weighted,     ///< a = 0, b = 2 / (1 + lambda)

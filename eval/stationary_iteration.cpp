@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "eval/limit_problem.h"
 
@@ -8,6 +9,19 @@ namespace limn::eval {
 namespace {
 
 using Stage = LimitOperator::Stage;
+
+/// The larger one; not std::max, since a residual that is no number must be seen.
+template <class Real>
+Real Larger(Real value, Real largest) {
+    return value <= largest ? largest : value;
+}
+
+template <class Real>
+Real FindLargest(std::vector<Real> const& values) {
+    Real largest = 0;
+    for (Real value : values) largest = Larger(value, largest);
+    return largest;
+}
 
 /// Coefficients a and b of the steps.
 class Schedule {
@@ -56,29 +70,61 @@ private:
     double _lambda = 0.0, _theta = 0.0, _sigma = 0.0, _rho = 0.0;
 };
 
-/// One step in place: `previous` becomes the next P. Returns max |M - A P|.
-template <int Length>
-double Step(LimitProblem const& problem, double const* current, double* previous, double a, double b) {
-    auto const maxima = MapChunks(problem.A.GetNumVertices(), [&](Index begin, Index end) {
-        double largest = 0.0;
-        problem.A.ForEachRow<Length>(begin, end, Stage::Rest, current, [&](Index row, auto const&, double const* limit) {
-            size_t const at = static_cast<size_t>(row) * Length;
-            double square = 0.0;
-            for (size_t i = 0; i < Length; ++i) {
-                double const residual = problem.data[at + i] - limit[i];
-                square += residual * residual;
-                double const p = current[at + i];
-                previous[at + i] = p + a * (p - previous[at + i]) + b * residual;
-            }
-            // Not std::max: a residual that is no number must be seen.
-            largest = square <= largest ? largest : square;
+/// The inner iteration, in float: a correction E with A E = R, started at 0, in the unit of the data's size.
+template <int Lanes>
+class Correction {
+public:
+    explicit Correction(LimitOperator const& A) : _A(A), _right(static_cast<size_t>(A.GetNumVertices()) * Row::kStride, 0.0f), _current(_right), _previous(_right) {}
+
+    /// One step in place, with max |R - A E| from before it.
+    float Step(double a, double b) {
+        float const fa = static_cast<float>(a), fb = static_cast<float>(b);
+        auto const maxima = MapChunks(_A.GetNumVertices(), [&](Index begin, Index end) {
+            float largest = 0.0f;
+            _A.ForEachRow<Row>(begin, end, Stage::Rest, _current.data(), [&](Index row, auto const&, Row const& own, Row const& limit) {
+                Row const residual = Row::Load(_right.data(), row) - limit;
+                largest = Larger(residual.SquaredLength(), largest);
+                (own + fa * (own - Row::Load(_previous.data(), row)) + fb * residual).Store(_previous.data(), row);
+            });
+            return largest;
         });
-        return largest;
-    });
-    double largest = 0.0;
-    for (double maximum : maxima) largest = maximum <= largest ? largest : maximum;
-    return std::sqrt(largest);
-}
+        std::swap(_current, _previous);
+        return std::sqrt(FindLargest(maxima));
+    }
+
+    /// The first step after Restart, which needs no A: E = 0.
+    void StepFromZero(double a, double b) {
+        float const fa = static_cast<float>(a), fb = static_cast<float>(b);
+        ForEachChunk(_A.GetNumVertices(), [&](Index begin, Index end) {
+            for (Index row = begin; row < end; ++row) {
+                (fb * Row::Load(_right.data(), row) - fa * Row::Load(_previous.data(), row)).Store(_previous.data(), row);
+            }
+        });
+        std::swap(_current, _previous);
+    }
+
+    /// Hands E over, visit(row, E), and goes on from 0 with the same memory: E_k = 0, E_{k-1} less E_k.
+    template <class Visit>
+    void Restart(Visit const& visit) {
+        ForEachChunk(_A.GetNumVertices(), [&](Index begin, Index end) {
+            for (Index row = begin; row < end; ++row) {
+                Row const own = Row::Load(_current.data(), row);
+                visit(row, _current.data() + static_cast<size_t>(row) * kStride);
+                (Row::Load(_previous.data(), row) - own).Store(_previous.data(), row);
+                Row().Store(_current.data(), row);
+            }
+        });
+    }
+
+    float* GetRight() { return _right.data(); }
+    static constexpr size_t kStride = FloatRow<Lanes>::kStride;
+
+private:
+    using Row = FloatRow<Lanes>;
+
+    LimitOperator const& _A;
+    std::vector<float> _right, _current, _previous;  // of vertices that are not of the rest: 0
+};
 
 /// Watches Chebyshev's convergence: the mean factor per step over the last steps since the bound was set.
 class RateWatch {
@@ -87,54 +133,122 @@ public:
 
     void Restart() { _residuals.clear(); }
     void Add(double residual) { _residuals.push_back(residual); }
-    bool IsReady() const { return _residuals.size() > kWindow + 2; }
+    bool IsReady() const { return _residuals.size() > kWindow + 3; }
     double GetRate() const {
+        // A single mode swings through zero: the larger of two neighbours tells its size.
+        auto const at = [&](size_t k) { return std::max(_residuals[k], _residuals[k - 1]); };
         size_t const last = _residuals.size() - 1;
-        return std::pow(_residuals[last] / _residuals[last - kWindow], 1.0 / kWindow);
+        return std::pow(at(last) / at(last - kWindow), 1.0 / kWindow);
     }
 
 private:
     std::vector<double> _residuals;
 };
 
+/// The outer iteration, in double: R = M - A P, P += E until R is small enough.
+template <int Length>
+class StationarySolve {
+public:
+    StationarySolve(LimitProblem const& problem, StationaryMethod method, double lambda, double smallest)
+        : _problem(problem), _method(method), _schedule(method, lambda), _smallest(smallest), _correction(problem.A) {}
+
+    IterationResult Run() {
+        double before = 1e30;
+        while (true) {
+            double const residual = FindRight();
+            Record(residual);
+            _result.residual = residual;
+            _result.converged = residual <= _problem.tolerance;
+            // Not even half: rounding, divergence, or an eigenvalue that the inner steps cannot see.
+            _result.isStuck |= !_result.converged && !(residual < 0.5 * before);
+            if (_result.converged || _result.isStuck || IsUsedUp()) break;
+            before = residual;
+            Correct(residual);
+            AddCorrection();
+        }
+        _result.lambdaMin = _method == StationaryMethod::Progressive ? 0.0 : _schedule.GetLambda();
+        return std::move(_result);
+    }
+
+private:
+    static constexpr int kLanes = Length == 1 ? 1 : 4;
+    /// So far inner steps go, as a share of the right side; rounding in float ends them at about a tenth of it.
+    static constexpr double kInnerGain = 1e-5;
+
+    bool IsUsedUp() const { return _result.applications >= _problem.maxApplications; }
+
+    void Record(double residual) {
+        ++_result.applications;
+        _result.history.push_back(residual);
+        if (_problem.onIteration) _problem.onIteration(_result.applications, residual);
+    }
+
+    /// The right side of the correction. Returns max |M - A P|.
+    double FindRight() {
+        using Row = DoubleRow<Length>;
+        auto const maxima = MapChunks(_problem.A.GetNumVertices(), [&](Index begin, Index end) {
+            double largest = 0.0;
+            _problem.A.ForEachRow<Row>(begin, end, Stage::Rest, _problem.solution, [&](Index row, auto const&, Row const&, Row const& limit) {
+                Row const residual = Row::Load(_problem.data, row) - limit;
+                largest = Larger(residual.SquaredLength(), largest);
+                float* const right = _correction.GetRight() + static_cast<size_t>(row) * _correction.kStride;
+                for (size_t i = 0; i < Length; ++i) right[i] = static_cast<float>(residual.values[i] / _problem.size);
+            });
+            return largest;
+        });
+        return std::sqrt(FindLargest(maxima)) / _problem.size;
+    }
+
+    void Correct(double start) {
+        double const goal = std::max(0.9 * _problem.tolerance, kInnerGain * start);
+        double a, b;
+        _schedule.Advance(a, b);
+        _correction.StepFromZero(a, b);
+        _watch.Add(start);
+        while (!IsUsedUp()) {
+            _schedule.Advance(a, b);
+            double const residual = static_cast<double>(_correction.Step(a, b));
+            Record(residual);
+            if (residual <= goal || !(residual < 1e4 * start)) return;
+            _watch.Add(residual);
+            if (_method == StationaryMethod::Chebyshev && _watch.IsReady() && !LowerBound()) return;
+        }
+    }
+
+    /// Lowers the bound where modes below it hold convergence up. Returns false where that goes too far.
+    bool LowerBound() {
+        double const rate = _watch.GetRate();
+        if (rate < std::sqrt(_schedule.GetExpectedRate())) return true;  // half as fast as hoped is still well
+        // The slowest mode's eigenvalue, and some room: an underestimate costs little, an overestimate much.
+        double const bound = std::min(0.8 * _schedule.FindEigenvalue(rate), 0.8 * _schedule.GetLambda());
+        _result.isStuck = !(bound > _smallest);
+        if (_result.isStuck) return false;
+        _schedule.Restart(bound);
+        _watch.Restart();
+        return true;
+    }
+
+    void AddCorrection() {
+        _correction.Restart([&](Index row, float const* e) {
+            double* const p = _problem.solution + static_cast<size_t>(row) * Length;
+            for (size_t i = 0; i < Length; ++i) p[i] += _problem.size * static_cast<double>(e[i]);
+        });
+    }
+
+    LimitProblem const& _problem;
+    StationaryMethod _method;
+    Schedule _schedule;
+    double _smallest;
+    Correction<kLanes> _correction;
+    RateWatch _watch;
+    IterationResult _result;
+};
+
 }  // namespace
 
 IterationResult RunStationary(LimitProblem const& problem, StationaryMethod method, double lambda, double smallest) {
     IterationResult result;
-    size_t const count = static_cast<size_t>(problem.A.GetNumVertices()) * problem.length;
-    std::vector<double> memory(problem.solution, problem.solution + count);
-    double *current = problem.solution, *previous = memory.data();
-    Schedule schedule(method, lambda);
-    RateWatch watch;
-    while (result.applications < problem.maxApplications) {
-        double a, b;
-        schedule.Advance(a, b);
-        WithLength(problem.length, [&]<int Length>() { result.residual = Step<Length>(problem, current, previous, a, b) / problem.size; });
-        ++result.applications;
-        result.history.push_back(result.residual);
-        if (problem.onIteration) problem.onIteration(result.applications, result.residual);
-        result.converged = result.residual <= problem.tolerance;
-        if (result.converged) break;
-        std::swap(current, previous);
-        if (!(result.residual < 1e30)) {
-            result.isStuck = true;
-            break;
-        }
-        watch.Add(result.residual);
-        if (method != StationaryMethod::Chebyshev || !watch.IsReady()) continue;
-        double const rate = watch.GetRate();
-        if (rate < std::sqrt(schedule.GetExpectedRate())) continue;  // half as fast as hoped is still well
-        // The slowest mode's eigenvalue, and some room: an underestimate costs little, an overestimate much.
-        double const bound = 0.8 * schedule.FindEigenvalue(rate);
-        if (!(bound > smallest)) {
-            result.isStuck = true;
-            break;
-        }
-        schedule.Restart(std::min(bound, 0.8 * schedule.GetLambda()));
-        watch.Restart();
-    }
-    result.lambdaMin = method == StationaryMethod::Progressive ? 0.0 : schedule.GetLambda();
-    if (current != problem.solution) std::copy_n(current, count, problem.solution);
+    WithLength(problem.length, [&]<int Length>() { result = StationarySolve<Length>(problem, method, lambda, smallest).Run(); });
     return result;
 }
 
@@ -147,12 +261,9 @@ double FindResidual(LimitProblem const& problem, Index* worst) {
     WithLength(problem.length, [&]<int Length>() {
         auto const maxima = MapChunks(problem.A.GetNumVertices(), [&](Index begin, Index end) {
             Largest found;
-            problem.A.ForEachRow<Length>(begin, end, Stage::Fixed, problem.solution, [&](Index row, auto const&, double const* limit) {
-                double square = 0.0;
-                for (size_t i = 0; i < Length; ++i) {
-                    double const residual = problem.data[static_cast<size_t>(row) * Length + i] - limit[i];
-                    square += residual * residual;
-                }
+            using Row = DoubleRow<Length>;
+            problem.A.ForEachRow<Row>(begin, end, Stage::Fixed, problem.solution, [&](Index row, auto const&, Row const&, Row const& limit) {
+                double const square = (Row::Load(problem.data, row) - limit).SquaredLength();
                 if (!(square <= found.square)) found = {square, row};
             });
             return found;

@@ -120,8 +120,8 @@ SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t, dou
     return sample;
 }
 
-double EvaluateChannel(FaceTree& tree, int domain, double s, double t, int channel) {
-    PatchPoint const at = tree.Locate(domain, s, t, FaceTree::kLimitDepth);
+double EvaluateChannel(FaceTree& tree, int domain, double s, double t, int channel, int maxDepth) {
+    PatchPoint const at = tree.Locate(domain, s, t, maxDepth);
     return at.origin[channel] + EvaluatePolynomial(tree, at, channel)[0];
 }
 

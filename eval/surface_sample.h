@@ -56,7 +56,7 @@ std::array<double, 6> EvaluateDerivatives(FaceTree const& tree, PatchPoint const
 /// \param orientation  +1, or -1 to turn the normal round
 SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t, double orientation);
 
-/// One channel's value at a place, in double.
-double EvaluateChannel(FaceTree& tree, int domain, double s, double t, int channel);
+/// One channel's value at a place, in double; nearer than 2^-maxDepth to an irregular corner, at that distance.
+double EvaluateChannel(FaceTree& tree, int domain, double s, double t, int channel, int maxDepth = FaceTree::kLimitDepth);
 
 }  // namespace limn::eval

@@ -52,6 +52,9 @@ public:
     /// Fills the keys all reports have and writes the report where it was asked for.
     void WriteReport();
 
+    /// Says on stderr, as an error, that the run did not reach what was asked. Returns its exit status.
+    int MissTarget(std::string const& message);
+
     /// \throws Error BadOption  if --report - would mix with data on stdout
     void KeepStdoutForData(bool writesToStdout) const;
 
@@ -75,7 +78,12 @@ struct Verb {
 Verb AddInfo(CLI::App& app);
 Verb AddEval(CLI::App& app);
 Verb AddBake(CLI::App& app);
+Verb AddBands(CLI::App& app);
+Verb AddDenoise(CLI::App& app);
+Verb AddFit(CLI::App& app);
+Verb AddMorph(CLI::App& app);
 Verb AddRefine(CLI::App& app);
+Verb AddSharpen(CLI::App& app);
 
 /// Exit statuses that are not failures of the program.
 inline constexpr int kDone = 0, kNotReached = 4;

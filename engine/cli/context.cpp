@@ -74,6 +74,11 @@ Context::Mesh Context::Load(std::string const& path, Defects defects) {
     return {std::move(scene), std::move(refiner)};
 }
 
+int Context::MissTarget(std::string const& message) {
+    fmt::print(stderr, "limn: error: {}\n", message);
+    return kNotReached;
+}
+
 void Context::KeepStdoutForData(bool writesToStdout) const {
     if (writesToStdout && _common.reportPath == "-") {
         throw Error(ErrorCode::BadOption, "--report -: stdout already carries the data; name a file");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 #include <limits>
 
@@ -162,7 +163,14 @@ private:
 
 }  // namespace
 
-void WriteMesh(std::string const& path, Scene const& scene, bool isDouble, std::vector<std::string>* warnings) {
+void RequireMeshEnding(std::string const& path) {
+    std::string const ending = GetEnding(path);
+    if (ending == ".obj" || ending == ".ply") return;
+    throw Error(ErrorCode::BadOption, fmt::format("-o '{}': a mesh is written as .obj or .ply", path));
+}
+
+std::string FormatMesh(std::string const& path, Scene const& scene, bool isDouble, std::vector<std::string>* warnings) {
+    RequireMeshEnding(path);
     double const largest = isDouble ? std::numeric_limits<double>::max() : std::numeric_limits<float>::max();
     auto const isWritable = [&](double value) { return std::abs(value) <= largest; };
     if (!std::all_of(scene.positions.begin(), scene.positions.end(), isWritable) ||
@@ -170,18 +178,35 @@ void WriteMesh(std::string const& path, Scene const& scene, bool isDouble, std::
         throw Error(ErrorCode::BadMesh, fmt::format("'{}': a coordinate is no number or does not fit a {}", path,
                                                     isDouble ? "double" : "float; use --precision double"));
     }
-    std::string const ending = GetEnding(path);
-    if (ending == ".obj") {
+    if (GetEnding(path) == ".obj") {
         if (warnings && !scene.primvars.empty()) warnings->push_back(path + ": OBJ holds no primvars; they are left out");
-        WriteFileAtomically(path, ObjText(scene, isDouble).Make());
-    } else if (ending == ".ply") {
-        auto const& cage = scene.cage;
-        if (warnings && (!cage.creaseSharpness.empty() || !cage.cornerSharpness.empty() || !cage.holes.empty())) {
-            warnings->push_back(path + ": PLY holds no creases, corners or holes; they are left out");
-        }
-        WriteFileAtomically(path, PlyBytes(scene, isDouble).Make());
-    } else {
-        throw Error(ErrorCode::BadOption, fmt::format("-o '{}': a mesh is written as .obj or .ply", path));
+        return ObjText(scene, isDouble).Make();
+    }
+    auto const& cage = scene.cage;
+    if (warnings && (!cage.creaseSharpness.empty() || !cage.cornerSharpness.empty() || !cage.holes.empty())) {
+        warnings->push_back(path + ": PLY holds no creases, corners or holes; they are left out");
+    }
+    return PlyBytes(scene, isDouble).Make();
+}
+
+void WriteMesh(std::string const& path, Scene const& scene, bool isDouble, std::vector<std::string>* warnings) {
+    WriteFileAtomically(path, FormatMesh(path, scene, isDouble, warnings));
+}
+
+void MeshSequence::Add(std::string const& path, Scene const& scene, std::vector<std::string>* warnings) {
+    std::string const bytes = FormatMesh(path, scene, _isDouble, warnings);
+    _files.push_back(std::make_unique<AtomicFile>(path));
+    _files.back()->Write(bytes);
+    _paths.push_back(path);
+}
+
+void MeshSequence::Commit() {
+    size_t numDone = 0;
+    try {
+        for (; numDone < _files.size(); ++numDone) _files[numDone]->Commit();
+    } catch (...) {
+        for (size_t i = 0; i < numDone; ++i) std::remove(_paths[i].c_str());
+        throw;
     }
 }
 

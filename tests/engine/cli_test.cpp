@@ -13,47 +13,14 @@
 
 #include "engine/io/file.h"
 #include "engine/io/mesh_reader.h"
+#include "support/cli.h"
 #include "support/meshes.h"
-#include "support/program.h"
 
 namespace limn {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
-using test::Outcome;
-using Words = std::vector<std::string>;
-
-std::string Shape(std::string const& name) { return test::DataPath("opensubdiv_shapes/" + name + ".obj"); }
-
-Outcome Limn(Words arguments, test::RunOptions const& options = {}) {
-    arguments.insert(arguments.begin(), LIMN_PROGRAM);
-    return test::Process(arguments, options).Wait();
-}
-
-std::vector<std::string> Lines(std::string const& text) {
-    std::vector<std::string> lines;
-    std::istringstream stream(text);
-    for (std::string line; std::getline(stream, line);) lines.push_back(line);
-    return lines;
-}
-
-/// The error line; the test fails unless there is exactly one, the last of stderr, and the status fits.
-std::string ExpectError(Outcome const& outcome, int status) {
-    EXPECT_EQ(outcome.status, status) << outcome.err;
-    auto const lines = Lines(outcome.err);
-    auto const isError = [](std::string const& line) { return line.starts_with("limn: error: "); };
-    EXPECT_EQ(std::count_if(lines.begin(), lines.end(), isError), 1) << outcome.err;
-    if (lines.empty() || !isError(lines.back())) {
-        ADD_FAILURE() << "stderr does not end with an error line: " << outcome.err;
-        return {};
-    }
-    return lines.back();
-}
-
-bool Contains(std::string const& text, std::string const& part) { return text.find(part) != std::string::npos; }
-
-json ReadJson(std::string const& path) { return json::parse(test::ReadText(path)); }
+using namespace test::cli;
 
 class Cli : public testing::Test {
 protected:
@@ -80,7 +47,7 @@ TEST_F(Cli, VersionGoesToStdout) {
 }
 
 TEST_F(Cli, HelpOfEveryVerbShowsAnExample) {
-    for (std::string const verb : {"info", "eval", "bake", "refine"}) {
+    for (std::string const verb : {"info", "eval", "bake", "refine", "fit", "bands", "denoise", "sharpen", "morph"}) {
         Outcome const outcome = Limn({verb, "--help"});
         EXPECT_EQ(outcome.status, 0) << verb;
         size_t const example = outcome.out.find("Example:");
