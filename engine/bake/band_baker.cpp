@@ -12,6 +12,7 @@
 #include <tbb/parallel_for.h>
 
 #include "engine/bake/pixel_kernel.h"
+#include "engine/bands.h"
 #include "eval/face_places.h"
 #include "far_ext/error.h"
 #include "far_ext/refiner.h"
@@ -109,9 +110,20 @@ BandBaker::BandBaker(Scene const& scene, Far::TopologyRefiner const& refiner, Sc
     }
     if (other) _values.push_back({other->positions, 3});
 
-    bool const hasNoise =
-        std::any_of(maps.begin(), maps.end(), [](Map const& map) { return map.kind == MapKind::Noise; });
-    if (hasNoise) _noise = std::make_unique<SurfaceNoise>(scene, options.noise);
+    auto const has = [&](MapKind kind) {
+        return std::any_of(maps.begin(), maps.end(), [&](Map const& map) { return map.kind == kind; });
+    };
+    if (has(MapKind::Bands)) {
+        int const numBands = options.maps.numBands;
+        auto const bands = SplitIntoBands(scene, eval::LimitOperator::Build(refiner), numBands);
+        for (size_t vertex = 0; vertex < scene.positions.size(); vertex += 3) {
+            for (int band = 1; band <= numBands; ++band) {  // all but the base
+                for (size_t c = 0; c < 3; ++c) _frequencyBands.push_back(bands[band][vertex + c]);
+            }
+        }
+        _values.push_back({_frequencyBands, GetNumBandChannels(options.maps)});
+    }
+    if (has(MapKind::Noise)) _noise = std::make_unique<SurfaceNoise>(scene, options.noise);
 
     _bounds.resize(_isBaked.size());
     tbb::parallel_for(tbb::blocked_range<Index>(0, GetNumFaces(), 512), [&](auto const& range) {
@@ -121,9 +133,7 @@ BandBaker::BandBaker(Scene const& scene, Far::TopologyRefiner const& refiner, Sc
             if (_isBaked[face]) _bounds[face] = raster.GetBounds(face);
         }
     });
-    bool const hasStretch =
-        std::any_of(maps.begin(), maps.end(), [](Map const& map) { return map.kind == MapKind::Stretch; });
-    if (hasStretch) _meanArea = FindMeanArea();
+    if (has(MapKind::Stretch)) _meanArea = FindMeanArea();
 }
 
 /// Surface area over texture area of all that is baked.

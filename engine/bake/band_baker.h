@@ -85,7 +85,7 @@ private:
     eval::Quantity _quantity;
     bool _needsJacobian = false;
     int _numPlanes = 0;
-    std::vector<double> _primvarValues;
+    std::vector<double> _primvarValues, _frequencyBands;
     std::vector<eval::FaceTree::Values> _values;
     std::unique_ptr<eval::LimitSurface> _surface, _uvSurface;
     std::unique_ptr<SurfaceNoise> _noise;  // null where no map shows it

@@ -79,14 +79,16 @@ std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, S
     if (options.maps.hasEncoding) {
         text += fmt::format(" encode={},{}", options.maps.encodeScale, options.maps.encodeOffset);
     }
-    auto const isNoise = [](Map const& map) { return map.kind == MapKind::Noise; };
-    if (std::any_of(file.maps.begin(), file.maps.end(), isNoise)) {
+    auto const has = [&](MapKind kind) {
+        return std::any_of(file.maps.begin(), file.maps.end(), [&](Map const& map) { return map.kind == kind; });
+    };
+    if (has(MapKind::Bands)) text += fmt::format(" bands={}", options.maps.numBands);
+    if (has(MapKind::Noise)) {
         text += fmt::format(" octaves={} frequency={} gain={} seed={} normalize={} ramp={}", options.noise.octaves,
                             options.noise.frequency, options.noise.gain, options.noise.seed, options.maps.isNormalized,
                             options.maps.ramp ? options.maps.ramp->GetText() : "none");
     }
-    auto const isDisplacement = [](Map const& map) { return map.kind == MapKind::Displacement; };
-    if (std::any_of(file.maps.begin(), file.maps.end(), isDisplacement)) {
+    if (has(MapKind::Displacement) || has(MapKind::Bands)) {
         text += fmt::format(" vector={} space={}", options.maps.isVector,
                             options.maps.space == MapSpace::Tangent ? "tangent" : "object");
     }

@@ -42,6 +42,7 @@ std::vector<MapRow> const& GetTable() {
         {"normal", MapKind::Normal, rgb, Averaging::UnitVector, true, "unit vector", Quantity::Normal},
         {"displacement", MapKind::Displacement, y, Averaging::Plain, true, "length", Quantity::Normal},
         {"stretch", MapKind::Stretch, y, Averaging::Plain, true, "log2", Quantity::Tangents},
+        {"bands", MapKind::Bands, {}, Averaging::Plain, true, "length", Quantity::Normal},
         {"noise", MapKind::Noise, y, Averaging::Plain, true, "amplitude", Quantity::Position},
     };
     return table;
@@ -101,8 +102,19 @@ std::vector<Map> MakeMaps(MapOptions const& options, Scene const& scene) {
             }
             map.extraChannel = 3 + numPrimvarChannels;
             if (options.isVector) map.channels = {"R", "G", "B"};
-            if (options.isVector && options.space == MapSpace::Tangent) map.quantity = Quantity::Tangents;
         }
+        if (map.kind == MapKind::Bands) {
+            map.extraChannel = 3 + numPrimvarChannels + (options.hasOtherMesh ? 3 : 0);
+            for (int band = 1; band <= options.numBands; ++band) {
+                std::string const part = band < options.numBands ? fmt::format("band{}", band) : "remainder";
+                for (char const* axis : {".R", ".G", ".B"}) {
+                    if (options.isVector) map.channels.push_back(part + axis);
+                }
+                if (!options.isVector) map.channels.push_back(part);
+            }
+        }
+        bool const isVector = options.isVector && (map.kind == MapKind::Displacement || map.kind == MapKind::Bands);
+        if (isVector && options.space == MapSpace::Tangent) map.quantity = Quantity::Tangents;
         if (map.kind == MapKind::Noise && (options.ramp || options.isNormalized)) {
             map.isSigned = false;
             map.units = options.ramp ? "colour" : "share of the range";
@@ -121,9 +133,11 @@ eval::Quantity FindQuantity(std::span<Map const> maps) {
 }
 
 bool NeedsJacobian(Map const& map, MapOptions const& options) {
-    return map.kind == MapKind::Stretch ||
-           (map.kind == MapKind::Displacement && options.isVector && options.space == MapSpace::Tangent);
+    bool const isDisplacement = map.kind == MapKind::Displacement || map.kind == MapKind::Bands;
+    return map.kind == MapKind::Stretch || (isDisplacement && options.isVector && options.space == MapSpace::Tangent);
 }
+
+int GetNumBandChannels(MapOptions const& options) { return 3 * options.numBands; }
 
 float PortableAtan2(float y, float x) {
     double const ax = std::abs(static_cast<double>(x)), ay = std::abs(static_cast<double>(y));
@@ -171,45 +185,52 @@ float ShapeIndex(float k1, float k2) {
     return PortableAtan2(k1 + k2, k1 - k2) * 0.63661977236758134f;
 }
 
-void EvaluateDisplacement(Map const& map, MapOptions const& options, MapSamples const& samples, size_t i, float* out,
-                          size_t outStride) {
-    float const* const planes = samples.planes;
-    size_t const stride = samples.stride;
-    auto const vector = [&](size_t channel) {
-        return Eigen::Vector3d(planes[channel * stride + i], planes[(channel + 1) * stride + i],
-                               planes[(channel + 2) * stride + i]);
-    };
-    size_t const other = static_cast<size_t>(eval::GetNumChannels(samples.quantity) + map.extraChannel - 3);
-    Eigen::Vector3d const difference = vector(other) - vector(eval::kPositionX);
-    Eigen::Vector3d const normal = vector(eval::kNormalX);
+Eigen::Vector3d GetVector(MapSamples const& samples, size_t channel, size_t i) {
+    float const* const at = samples.planes + channel * samples.stride + i;
+    return {at[0], at[samples.stride], at[2 * samples.stride]};
+}
+
+/// A displacement as it is asked for: along the normal, or as a vector in object or tangent space.
+void PutDisplacement(MapOptions const& options, MapSamples const& samples, size_t i, Eigen::Vector3d const& displacement,
+                     float* out, size_t outStride) {
+    Eigen::Vector3d const normal = GetVector(samples, eval::kNormalX, i);
     if (!options.isVector) {
-        out[i] = static_cast<float>(difference.dot(normal));
+        out[i] = static_cast<float>(displacement.dot(normal));
         return;
     }
-    Eigen::Vector3d result = difference;
+    Eigen::Vector3d result = displacement;
     if (options.space == MapSpace::Tangent) {
         // dP/du = P_s s_u + P_t t_u, with d(s,t)/d(u,v) the inverse of the Jacobian.
         auto const& [us, ut, vs, vt] = samples.jacobians[i];
         double const det = us * vt - ut * vs;
         double const sign = det < 0.0 ? -1.0 : 1.0;
-        Eigen::Vector3d along = sign * (vt * vector(eval::kTangentSX) - vs * vector(eval::kTangentTX));
+        Eigen::Vector3d along =
+            sign * (vt * GetVector(samples, eval::kTangentSX, i) - vs * GetVector(samples, eval::kTangentTX, i));
         along -= along.dot(normal) * normal;
         double const length = along.norm();
         along = length > 0.0 ? Eigen::Vector3d(along / length) : normal.unitOrthogonal();
-        result = {difference.dot(along), difference.dot(normal.cross(along)), difference.dot(normal)};
+        result = {displacement.dot(along), displacement.dot(normal.cross(along)), displacement.dot(normal)};
     }
     for (size_t c = 0; c < 3; ++c) out[c * outStride + i] = static_cast<float>(result[static_cast<int>(c)]);
 }
 
+/// Where the tree's channel `extraChannel` is among the planes.
+size_t FindPlane(MapSamples const& samples, int extraChannel) {
+    return static_cast<size_t>(eval::GetNumChannels(samples.quantity) + extraChannel - 3);
+}
+
+void EvaluateBands(Map const& map, MapOptions const& options, MapSamples const& samples, float* out, size_t outStride) {
+    size_t const first = FindPlane(samples, map.extraChannel), numChannels = options.isVector ? 3 : 1;
+    for (size_t band = 0; band < static_cast<size_t>(options.numBands); ++band, out += numChannels * outStride) {
+        for (size_t i = 0; i < samples.count; ++i) {
+            PutDisplacement(options, samples, i, GetVector(samples, first + 3 * band, i), out, outStride);
+        }
+    }
+}
+
 float Stretch(MapSamples const& samples, size_t i) {
-    float const* const planes = samples.planes;
-    size_t const stride = samples.stride;
     auto const& jacobian = samples.jacobians[i];
-    auto const at = [&](int channel) {
-        return Eigen::Vector3d(planes[channel * stride + i], planes[(channel + 1) * stride + i],
-                               planes[(channel + 2) * stride + i]);
-    };
-    double const area = at(eval::kTangentSX).cross(at(eval::kTangentTX)).norm();
+    double const area = GetVector(samples, eval::kTangentSX, i).cross(GetVector(samples, eval::kTangentTX, i)).norm();
     double const texture = std::abs(jacobian[0] * jacobian[3] - jacobian[1] * jacobian[2]);
     double const ratio = area / (texture * samples.meanArea);
     // A point without area or without texture area has no stretch; the bounds keep it a number.
@@ -267,7 +288,8 @@ void EvaluateMap(Map const& map, MapOptions const& options, MapSamples const& sa
         case MapKind::Normal: copyVector(eval::kNormalX); break;
         case MapKind::Displacement:
             for (size_t i = 0; i < count; ++i) {
-                EvaluateDisplacement(map, options, samples, i, out, outStride);
+                Eigen::Vector3d const there = GetVector(samples, FindPlane(samples, map.extraChannel), i);
+                PutDisplacement(options, samples, i, there - GetVector(samples, eval::kPositionX, i), out, outStride);
             }
             break;
         case MapKind::Stretch:
@@ -275,9 +297,10 @@ void EvaluateMap(Map const& map, MapOptions const& options, MapSamples const& sa
             break;
         case MapKind::Primvar:
             for (int c = 0; c < map.GetNumChannels(); ++c) {
-                copy(eval::GetNumChannels(samples.quantity) + map.extraChannel - 3 + c, c);
+                copy(static_cast<int>(FindPlane(samples, map.extraChannel)) + c, c);
             }
             break;
+        case MapKind::Bands: EvaluateBands(map, options, samples, out, outStride); break;
         case MapKind::Noise: EvaluateNoise(options, samples, out, outStride); break;
     }
     if (options.hasEncoding) {

@@ -14,7 +14,7 @@ namespace limn::engine {
 
 enum class MapKind {
     Mean, Gaussian, K1, K2, Curvedness, ShapeIndex, Curvature, PrincipalDirection, Position, Normal,
-    Displacement, Stretch, Primvar, Noise
+    Displacement, Stretch, Primvar, Noise, Bands
 };
 
 /// How texels of a map are averaged (supersampling, mip levels): plainly, or as what they are.
@@ -31,7 +31,7 @@ struct Map {
     bool isSigned = true;
     std::string units;
     eval::Quantity quantity;            ///< what it needs of the surface
-    int extraChannel = 0;               ///< of the tree's values: where a primvar or the other mesh starts
+    int extraChannel = 0;               ///< of the tree's values: where a primvar, the other mesh or the bands start
 
     int GetNumChannels() const { return static_cast<int>(channels.size()); }
 };
@@ -41,6 +41,7 @@ struct MapOptions {
     bool isVector = false;             ///< --vector
     MapSpace space = MapSpace::Object;
     bool hasOtherMesh = false;         ///< --against was given
+    int numBands = 4;                  ///< --bands: of the map 'bands', its smooth base included
     bool hasEncoding = false;
     double encodeScale = 1.0, encodeOffset = 0.0;
     bool isNormalized = false;         ///< --normalize: noise from 0 to 1
@@ -52,6 +53,9 @@ std::vector<Map> MakeMaps(MapOptions const& options, Scene const& scene);
 
 /// The least quantity that serves all maps.
 eval::Quantity FindQuantity(std::span<Map const> maps);
+
+/// Number of the tree's channels that the bands take: three for each but the base, and the remainder's.
+int GetNumBandChannels(MapOptions const& options);
 
 /// True where a map needs d(u,v)/d(s,t): tangent space and stretch.
 bool NeedsJacobian(Map const& map, MapOptions const& options);

@@ -23,6 +23,7 @@ struct Arguments {
     engine::NoiseOptions noise;
     std::string noiseRamp;
     bool isNormalized = false;
+    int numBands = 4;
 };
 
 int ParseInteger(std::string const& option, std::string_view text, int low, int high) {
@@ -80,6 +81,7 @@ engine::BakeOptions MakeOptions(Arguments const& a, CommonOptions const& common)
     }
     options.noise = a.noise;
     options.maps.isNormalized = a.isNormalized;
+    options.maps.numBands = a.numBands;
     if (!a.noiseRamp.empty()) options.maps.ramp = engine::ColourRamp::Parse(a.noiseRamp);
     ParseSize(a.size, options);
     ParseTiles(a.tiles, options);
@@ -174,7 +176,7 @@ Verb AddBake(CLI::App& app) {
     verb->add_option("-o,--output", a->pattern, "output path with {map}, {mesh}, <UDIM> or {udim}")->required();
     verb->add_option("--maps", a->maps,
                      "comma-separated: mean, gaussian, k1, k2, curvedness, shape-index, curvature, principal-direction, "
-                     "position, normal, displacement, stretch, noise, primvar:NAME")
+                     "position, normal, displacement, stretch, noise, bands, primvar:NAME")
         ->delimiter(',')
         ->required();
     verb->add_option("--size", a->size, "texels: N or WxH (default 2048)");
@@ -188,8 +190,10 @@ Verb AddBake(CLI::App& app) {
     verb->add_flag("--preview", a->hasPreview, "also a PNG to look at");
     verb->add_option("--encode", a->encode, "S,O: write value * S + O");
     verb->add_option("--against", a->against, "the mesh that displacement leads to");
-    verb->add_flag("--vector", a->isVector, "displacement as a vector");
-    verb->add_option("--space", a->space, "object (default) or tangent, of vector displacement")
+    verb->add_option("--bands", a->numBands, "of the map bands: frequency bands, their smooth base included (default 4)")
+        ->check(CLI::Range(1, 64));
+    verb->add_flag("--vector", a->isVector, "displacement and bands as vectors");
+    verb->add_option("--space", a->space, "object (default) or tangent, of vectors")
         ->check(CLI::IsMember({"object", "tangent"}));
     verb->add_option("--noise-octaves", a->noise.octaves, "levels of refinement with noise each (default 4)")->check(CLI::Range(1, 10));
     verb->add_option("--noise-frequency", a->noise.frequency,

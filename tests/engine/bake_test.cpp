@@ -7,6 +7,7 @@
 
 #include "engine/bake/audit.h"
 #include "engine/bake/exr_lookup.h"
+#include "engine/bands.h"
 #include "eval/surface_sample.h"
 #include "far_ext/error.h"
 #include "far_ext/refiner.h"
@@ -87,6 +88,41 @@ TEST(Bake, FilesDoNotDependOnThreads) {
     }
     ASSERT_EQ(sums.size(), 8u);
     for (size_t i = 0; i < 4; ++i) EXPECT_EQ(sums[i], sums[i + 4]);
+}
+
+// The bands' layers add up to what leads from the smooth base's limit surface to the mesh's: the displacement
+// to the base, turned round.
+TEST(Bake, BandsAddUpToTheWayFromTheSmoothBase) {
+    test::TemporaryFolder const folder;
+    engine::Scene const spot = test::LoadData("../../scenes/spot/spot.obj");
+    engine::Scene base = spot;
+    base.positions = engine::SplitIntoBands(spot, eval::LimitOperator::Build(*far_ext::CreateRefiner(spot.cage)), 3)[0];
+    for (bool const isVector : {false, true}) {
+        auto bands = MakeOptions(folder / "bands.exr", {"bands"}, 64);
+        bands.maps.numBands = 3;
+        bands.maps.isVector = isVector;
+        RunBake(spot, bands);
+        auto way = MakeOptions(folder / "way.exr", {"displacement"}, 64);
+        way.maps.hasOtherMesh = true;
+        way.maps.isVector = isVector;
+        RunBake(spot, way, &base);
+        engine::ExrLookup lookup;
+        std::vector<std::string> const axes = isVector ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"};
+        double most = 0.0;
+        for (int y = 0; y < 64; ++y) {
+            for (int x = 0; x < 64; ++x) {
+                auto const expected = lookup.Look(folder / "way.exr", axes, x, y);
+                for (size_t c = 0; c < axes.size(); ++c) {
+                    std::vector<std::string> layers;
+                    for (char const* part : {"band1", "band2", "remainder"}) layers.push_back(part + (isVector ? "." + axes[c] : ""));
+                    auto const values = lookup.Look(folder / "bands.exr", layers, x, y);
+                    ASSERT_NEAR(values[0] + values[1] + values[2], -expected[c], 1e-6) << x << " " << y;
+                    most = std::max(most, std::abs(values[0]));
+                }
+            }
+        }
+        EXPECT_GT(most, 1e-3);
+    }
 }
 
 // Moving the other mesh by d along z makes the displacement d times the normal's z, and the vector d z.
