@@ -184,6 +184,9 @@ bool TopologyRefinerFactory<RingTopology>::resizeComponentTopology(TopologyRefin
     }
     for (Index vertex = 0; vertex < ring.numVertices; ++vertex) {
         setNumBaseVertexFaces(refiner, vertex, static_cast<int>(topology.vertexFaces[vertex].size()));
+        // OpenSubdiv sizes buffers for a vertex' faces by the largest number of edges it has heard of; where
+        // edges have three faces and more, a vertex has fewer edges than faces.
+        setNumBaseVertexEdges(refiner, vertex, static_cast<int>(topology.vertexFaces[vertex].size()));
         setNumBaseVertexEdges(refiner, vertex, static_cast<int>(topology.vertexEdges[vertex].size()));
     }
     return true;
