@@ -90,30 +90,30 @@ TEST(Bake, FilesDoNotDependOnThreads) {
     for (size_t i = 0; i < 4; ++i) EXPECT_EQ(sums[i], sums[i + 4]);
 }
 
-// Every three of nine vertices make a face: seven faces on each edge, more faces than edges at each vertex.
+// Every three of eight vertices make a face: six faces on each edge, more faces than edges at each vertex.
 TEST(Bake, TakesManyFacesOnAnEdge) {
     std::vector<double> positions, uvs;
-    for (int i = 0; i < 9; ++i) {
+    for (int i = 0; i < 8; ++i) {
         positions.insert(positions.end(), {std::cos(i), std::sin(i), 0.1 * i * i});
         uvs.insert(uvs.end(), {0.5 + 0.4 * std::cos(i), 0.5 + 0.4 * std::sin(i)});
     }
     std::vector<std::vector<Index>> faces;
-    for (Index a = 0; a < 9; ++a) {
-        for (Index b = a + 1; b < 9; ++b) {
-            for (Index c = b + 1; c < 9; ++c) faces.push_back({a, b, c});
+    for (Index a = 0; a < 8; ++a) {
+        for (Index b = a + 1; b < 8; ++b) {
+            for (Index c = b + 1; c < 8; ++c) faces.push_back({a, b, c});
         }
     }
     for (auto scheme : {Sdc::SCHEME_CATMARK, Sdc::SCHEME_LOOP, Sdc::SCHEME_BILINEAR}) {
         test::TemporaryFolder const folder;
         engine::Scene scene = test::MakeScene(positions, faces);
         scene.cage.scheme = scheme;
-        scene.cage.fvarChannels.push_back({9, scene.cage.faceVertices});
+        scene.cage.fvarChannels.push_back({8, scene.cage.faceVertices});
         scene.uvs = uvs;
-        auto const report = RunBake(scene, MakeOptions(folder / "a.exr", {"normal"}, 32));
-        EXPECT_GT(report.texelsCovered, 100u);
+        auto const report = RunBake(scene, MakeOptions(folder / "a.exr", {"normal"}, 16));
+        EXPECT_GT(report.texelsCovered, 40u);
         engine::ExrLookup lookup;
-        for (int x = 0; x < 32; ++x) {
-            for (double value : lookup.Look(folder / "a.exr", {"R", "G", "B"}, x, 16)) EXPECT_LE(std::abs(value), 1.0001);
+        for (int x = 0; x < 16; ++x) {
+            for (double value : lookup.Look(folder / "a.exr", {"R", "G", "B"}, x, 8)) EXPECT_LE(std::abs(value), 1.0001);
         }
     }
 }
