@@ -1,7 +1,9 @@
 #include "eval/simd_evaluator.h"
 
+#include <atomic>
 #include <cstring>
 #include <limits>
+#include <thread>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -261,6 +263,26 @@ TEST(SimdEvaluator, SameBytesOnEveryInstructionSetAndNumberOfThreads) {
         }
     }
     SelectInstructionSet(before);
+}
+
+TEST(SimdEvaluator, ManyThreadsMayCallAtOnce) {
+    auto const refiner = test::RefineUniformly(test::LoadData("opensubdiv_shapes/catmark_cube_creases0.obj").cage, 3);
+    auto const far = MakeFarTable(*refiner, Factory::INTERPOLATE_VERTEX);
+    CompiledStencils const compiled(far_ext::BuildRefinedStencils(*refiner));
+    auto const source = test::MakeRandomValues(static_cast<size_t>(far->GetNumControlVertices()) * 3, 5);
+    auto const expected = EvaluateCompiled(compiled, source, 3), expectedRaw = EvaluateRaw(*far, source, 3, 0, far->GetNumStencils());
+    std::atomic<int> numRight = 0;
+    std::vector<std::thread> threads;
+    for (int i = 0; i < 4; ++i) {
+        threads.emplace_back([&] {
+            for (int k = 0; k < 20; ++k) {
+                numRight += AreSameBytes(EvaluateCompiled(compiled, source, 3), expected) &&
+                            AreSameBytes(EvaluateRaw(*far, source, 3, 0, far->GetNumStencils()), expectedRaw);
+            }
+        });
+    }
+    for (std::thread& thread : threads) thread.join();
+    EXPECT_EQ(numRight, 4 * 20);
 }
 
 TEST(SimdEvaluator, DerivativesHaveTheSameBytesOnEveryInstructionSet) {
