@@ -20,6 +20,8 @@ using eval::CompiledStencils;
 using eval::InstructionSet;
 using eval::SimdEvaluator;
 
+constexpr int kTimes = 3;
+
 struct Targets {
     std::optional<double> overLength3, overLength4, build, memory;
 };
@@ -82,19 +84,23 @@ void MeasureMesh(char const* name, engine::Scene const& scene, int level, Target
     CheckEqual(ours3, theirs3, "the compiled table of Far");
 
     Rounds rounds(numRounds);
-    size_t const osd3 = rounds.Add("OpenSubdiv, length 3", [&] { EvaluateWithOsd(*far, source3.data(), theirs3.data(), 3); }, numRows);
-    size_t const osd4 = rounds.Add("OpenSubdiv, length 4", [&] { EvaluateWithOsd(*far, source4.data(), theirs4.data(), 4); }, numRows);
-    size_t const plain = rounds.Add("plain rows, -O3, length 3", [&] { EvaluatePlainRows(*far, source3.data(), theirs3.data()); }, numRows);
-    size_t const limn3 = rounds.Add("limn, length 3", [&] { EvaluateCompiled(ours, source3, ours3, 3); }, numRows);
-    size_t const limn4 = rounds.Add("limn, length 4", [&] { EvaluateCompiled(ours, source4, ours4, 4); }, numRows);
-    size_t const sse3 = rounds.Add("limn, length 3, SSE2 only", [&] { WithSse2([&] { EvaluateCompiled(ours, source3, ours3, 3); }); }, numRows);
-    size_t const sse4 = rounds.Add("limn, length 4, SSE2 only", [&] { WithSse2([&] { EvaluateCompiled(ours, source4, ours4, 4); }); }, numRows);
-    size_t const compiled = rounds.Add("limn, Far's table compiled, length 3", [&] { EvaluateCompiled(fromFar, source3, ours3, 3); }, numRows);
-    size_t const raw = rounds.Add("limn, Far's table as it stands, length 3", [&] {
+    // Every evaluation several times in a row, as an animation does it.
+    auto const add = [&](char const* what, auto const& evaluate) {
+        return rounds.Add(fmt::format("{}, {} times", what, kTimes), [evaluate] { for (int i = 0; i < kTimes; ++i) evaluate(); }, numRows * kTimes);
+    };
+    size_t const osd3 = add("OpenSubdiv, length 3", [&] { EvaluateWithOsd(*far, source3.data(), theirs3.data(), 3); });
+    size_t const osd4 = add("OpenSubdiv, length 4", [&] { EvaluateWithOsd(*far, source4.data(), theirs4.data(), 4); });
+    size_t const plain = add("plain rows, -O3, length 3", [&] { EvaluatePlainRows(*far, source3.data(), theirs3.data()); });
+    size_t const limn3 = add("limn, length 3", [&] { EvaluateCompiled(ours, source3, ours3, 3); });
+    size_t const limn4 = add("limn, length 4", [&] { EvaluateCompiled(ours, source4, ours4, 4); });
+    size_t const sse3 = add("limn, length 3, SSE2 only", [&] { WithSse2([&] { EvaluateCompiled(ours, source3, ours3, 3); }); });
+    size_t const sse4 = add("limn, length 4, SSE2 only", [&] { WithSse2([&] { EvaluateCompiled(ours, source4, ours4, 4); }); });
+    size_t const compiled = add("limn, Far's table compiled, length 3", [&] { EvaluateCompiled(fromFar, source3, ours3, 3); });
+    size_t const raw = add("limn, Far's table as it stands, length 3", [&] {
         Osd::BufferDescriptor const desc(0, 3, 3);
         SimdEvaluator::EvalStencils(source3.data(), desc, ours3.data(), desc, far->GetSizes().data(), far->GetOffsets().data(),
                                     far->GetControlIndices().data(), far->GetWeights().data(), 0, far->GetNumStencils());
-    }, numRows);
+    });
     size_t const theirBuild = rounds.Add("build: Far::StencilTableFactory", [&] { MakeFarTable(*refiner); }, numRows);
     size_t const ourBuild = rounds.Add("build: limn, from the topology", [&] { CompiledStencils const table(far_ext::BuildRefinedStencils(*refiner)); }, numRows);
     size_t const compile = rounds.Add("build: limn, from Far's table", [&] { CompiledStencils::Compile(*far); }, numRows);

@@ -3,26 +3,14 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
+#include "eval/for_parts.h"
 #include "eval/stencil_kernel.h"
 #include "far_ext/error.h"
 
 namespace limn::eval {
 
 namespace {
-
-/// Calls work(first, last) for parts of [0, count), at once where the whole is too small to share.
-template <class Work>
-void ForParts(Index count, Index grain, Work work) {
-    if (count <= grain) {
-        if (count > 0) work(Index(0), count);
-        return;
-    }
-    tbb::parallel_for(tbb::blocked_range<Index>(0, count, static_cast<size_t>(grain)),
-                      [&](auto const& range) { work(range.begin(), range.end()); });
-}
 
 constexpr Index kRowsPerTask = 8192;  // some tens of microseconds
 
@@ -116,7 +104,7 @@ void CompiledStencils::EvaluateGroups(StencilJob const& job) const {
                                     _groups.runLengths.data(), _groups.controls.data(), _groups.runStarts.data(),
                                     _groups.weights.data()};
     Index const rowsPerGroup = std::max(1, _groups.numRows / numGroups);
-    ForParts(numGroups, std::max(1, kRowsPerTask / rowsPerGroup),
+    ForParts(0, numGroups, std::max(1, kRowsPerTask / rowsPerGroup),
              [&](Index first, Index last) { EvaluateStencilGroups(job, arrays, first, last); });
 }
 
@@ -126,14 +114,14 @@ void CompiledStencils::EvaluateSingles(StencilJob const& job) const {
     if (numRuns == 0) return;
     StencilRunArrays const arrays{singles.runs.data(), singles.indices.data(), singles.weights.data()};
     Index const rowsPerRun = std::max(1, _groups.numRows / numRuns);
-    ForParts(numRuns, std::max(1, kRowsPerTask / rowsPerRun),
+    ForParts(0, numRuns, std::max(1, kRowsPerTask / rowsPerRun),
              [&](Index first, Index last) { EvaluateStencilRuns(job, arrays, first, last); });
 }
 
 void CompiledStencils::EvaluateSlices(StencilJob const& job) const {
     StencilSliceArrays arrays{_slices.offsets.data(), _slices.rows.data(), _slices.indices.data(), {}};
     for (int set = 0; set < _groups.numSets; ++set) arrays.weights[set] = _slices.weights[set].data();
-    ForParts(_slices.GetNum(), kRowsPerTask / StencilSliceArrays::kLanes,
+    ForParts(0, _slices.GetNum(), kRowsPerTask / StencilSliceArrays::kLanes,
              [&](Index first, Index last) { EvaluateStencilSlices(job, arrays, first, last); });
 }
 

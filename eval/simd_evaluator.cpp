@@ -1,9 +1,8 @@
 #include "eval/simd_evaluator.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
+#include "eval/for_parts.h"
 #include "eval/stencil_kernel.h"
 #include "far_ext/error.h"
 
@@ -85,9 +84,8 @@ bool SimdEvaluator::Apply(float const* source, BufferDescriptor const& sourceDes
         if (!arrays.weights[set]) Refuse("a stencil table lacks weights");
     }
     StencilJob const job = MakeJob(source, sourceDesc, targets, start, end);
-    constexpr size_t kRowsPerTask = 4096;
-    tbb::parallel_for(tbb::blocked_range<Index>(start, end, kRowsPerTask),
-                      [&](auto const& range) { EvaluateStencilRows(job, arrays, range.begin(), range.end()); });
+    constexpr Index kRowsPerTask = 4096;
+    ForParts(start, end, kRowsPerTask, [&](Index first, Index last) { EvaluateStencilRows(job, arrays, first, last); });
     return true;
 }
 

@@ -5,8 +5,8 @@
 
 #include <opensubdiv/osd/cpuEvaluator.h>
 #include <opensubdiv/osd/ompEvaluator.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+
+#include "eval/for_parts.h"
 
 namespace limn::eval {
 
@@ -81,9 +81,9 @@ void StencilEvaluator::EvalStencils(float const* source, BufferDescriptor const&
         EvaluateRange<Osd::OmpEvaluator>(source, sourceDesc, targets, rows, start, end);
         return;
     }
-    constexpr size_t kRowsPerTask = 4096;
-    tbb::parallel_for(tbb::blocked_range<Index>(start, end, kRowsPerTask), [&](auto const& range) {
-        EvaluateRange<Osd::CpuEvaluator>(source, sourceDesc, targets, rows, range.begin(), range.end());
+    constexpr Index kRowsPerTask = 4096;
+    ForParts(start, end, kRowsPerTask, [&](Index first, Index last) {
+        EvaluateRange<Osd::CpuEvaluator>(source, sourceDesc, targets, rows, first, last);
     });
 }
 
