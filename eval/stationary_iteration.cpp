@@ -83,7 +83,7 @@ public:
             float largest = 0.0f;
             _A.ForEachRow<Row>(begin, end, Stage::Rest, _current.data(), [&](Index row, auto const&, Row const& own, Row const& limit) {
                 Row const residual = Row::Load(_right.data(), row) - limit;
-                largest = Larger(residual.SquaredLength(), largest);
+                largest = std::max(largest, residual.SquaredLength());
                 (own + fa * (own - Row::Load(_previous.data(), row)) + fb * residual).Store(_previous.data(), row);
             });
             return largest;
