@@ -12,7 +12,7 @@ namespace {
 
 /// Where neither valences nor the caller give a bound. Valence-3 vertices among others hardly go below it, and
 /// Chebyshev lowers it where they do.
-constexpr double kUsualLambda = 0.08;
+constexpr double kUsualLambda = 0.09;
 
 /// Below this conjugate gradients, which adapt to a few small eigenvalues, are faster than Chebyshev.
 constexpr double kSmallLambda = 0.03;
@@ -74,15 +74,17 @@ char const* GetName(SolveMethod method) {
 }
 
 double FindSize(std::span<double const> values, int length) {
-    double square = 0.0;
-    for (int c = 0; c < length; ++c) {
-        double low = INFINITY, high = -INFINITY;
-        for (size_t i = static_cast<size_t>(c); i < values.size(); i += static_cast<size_t>(length)) {
-            low = std::min(low, values[i]);
-            high = std::max(high, values[i]);
+    if (values.empty()) return 1.0;
+    size_t const n = static_cast<size_t>(length);
+    std::vector<double> low(values.begin(), values.begin() + length), high(low);
+    for (size_t i = n; i < values.size(); i += n) {
+        for (size_t c = 0; c < n; ++c) {
+            low[c] = std::min(low[c], values[i + c]);
+            high[c] = std::max(high[c], values[i + c]);
         }
-        if (high > low) square += (high - low) * (high - low);
     }
+    double square = 0.0;
+    for (size_t c = 0; c < n; ++c) square += (high[c] - low[c]) * (high[c] - low[c]);
     return square > 0.0 ? std::sqrt(square) : 1.0;
 }
 

@@ -44,9 +44,8 @@ void LimitOperator::Append(LimitRow const& row) {
         _weights.push_back(row.centre);
         _weights.insert(_weights.end(), row.weights.begin(), row.weights.end());
     } else {
-        wanted.centre = row.centre;
-        wanted.edge = row.edge;
-        wanted.other = row.other;
+        wanted.weights = {row.centre, row.edge, row.other};
+        for (size_t i = 0; i < 3; ++i) wanted.floatWeights[i] = static_cast<float>(wanted.weights[i]);
     }
     _indices.insert(_indices.end(), row.indices.begin(), row.indices.end());
     if (std::max(_indices.size(), _weights.size()) > static_cast<size_t>(std::numeric_limits<int>::max())) {

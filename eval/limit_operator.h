@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "eval/chunks.h"
@@ -23,7 +25,8 @@ public:
 
     /// What rows have in common.
     struct RowClass {
-        double centre = 1.0, edge = 0.0, other = 0.0;  ///< weights; unused where isExplicit
+        std::array<double, 3> weights{1.0, 0.0, 0.0};  ///< centre, edge ends, others; unused where isExplicit
+        std::array<float, 3> floatWeights{1.0f, 0.0f, 0.0f};
         double scale = 1.0;                            ///< of D, see far_ext::LimitRow
         int numEdges = 0;
         Stage stage = Stage::Fixed;
@@ -31,6 +34,12 @@ public:
         bool isExplicit = false;
         bool isEvenCubic = false;
         bool operator==(RowClass const&) const = default;
+
+        template <class Scalar>
+        Scalar Weight(size_t which) const {
+            if constexpr (std::is_same_v<Scalar, float>) return floatWeights[which];
+            else return weights[which];
+        }
     };
 
     /// Builds the operator in linear time, straight from the topology.
@@ -82,6 +91,15 @@ private:
     bool _isSymmetric = true;
 };
 
+/// Values of so many vertices, added up in order: without a loop, which would cost as much as the sums.
+template <int Count, class Row>
+[[gnu::always_inline]] inline
+Row SumOf(Index const* vertices, typename Row::Scalar const* x) {
+    Row sum = Row::Load(x, vertices[0]);
+    for (int i = 1; i < Count; ++i) sum = sum + Row::Load(x, vertices[i]);
+    return sum;
+}
+
 template <class Row, class Visit>
 void LimitOperator::ForEachRow(Index begin, Index end, Stage first, typename Row::Scalar const* x, Visit visit) const {
     using Scalar = typename Row::Scalar;
@@ -99,10 +117,17 @@ void LimitOperator::ForEachRow(Index begin, Index end, Stage first, typename Row
             continue;
         }
         Row edges, others;
-        for (Index const* const middle = k + c.numEdges; k < middle; ++k) edges = edges + Row::Load(x, *k);
-        for (; k < stop; ++k) others = others + Row::Load(x, *k);
-        visit(row, c, own,
-              static_cast<Scalar>(c.centre) * own + static_cast<Scalar>(c.edge) * edges + static_cast<Scalar>(c.other) * others);
+        if (c.numEdges == 4 && stop - k == 8) {  // the usual vertex among quads
+            edges = SumOf<4, Row>(k, x);
+            others = SumOf<4, Row>(k + 4, x);
+        } else if (c.numEdges == 3 && stop - k == 6) {  // the usual other one
+            edges = SumOf<3, Row>(k, x);
+            others = SumOf<3, Row>(k + 3, x);
+        } else {
+            for (Index const* const middle = k + c.numEdges; k < middle; ++k) edges = edges + Row::Load(x, *k);
+            for (; k < stop; ++k) others = others + Row::Load(x, *k);
+        }
+        visit(row, c, own, c.Weight<Scalar>(0) * own + c.Weight<Scalar>(1) * edges + c.Weight<Scalar>(2) * others);
     }
 }
 
@@ -110,10 +135,10 @@ template <class Visit>
 void LimitOperator::ForEachEntry(Index row, Visit visit) const {
     RowClass const& c = GetClass(row);
     double const* const own = c.isExplicit ? &_weights[static_cast<size_t>(_indices[_starts[row]])] : nullptr;
-    visit(row, own ? own[0] : c.centre);
+    visit(row, own ? own[0] : c.weights[0]);
     auto const neighbours = GetNeighbours(row);
     for (size_t k = 0; k < neighbours.size(); ++k) {
-        double const shared = static_cast<int>(k) < c.numEdges ? c.edge : c.other;
+        double const shared = c.weights[static_cast<int>(k) < c.numEdges ? 1 : 2];
         visit(neighbours[k], own ? own[k + 1] : shared);
     }
 }

@@ -83,7 +83,7 @@ public:
             float largest = 0.0f;
             _A.ForEachRow<Row>(begin, end, Stage::Rest, _current.data(), [&](Index row, auto const&, Row const& own, Row const& limit) {
                 Row const residual = Row::Load(_right.data(), row) - limit;
-                largest = Larger(residual.SquaredLength(), largest);
+                largest = std::max(largest, residual.SquaredLength());
                 (own + fa * (own - Row::Load(_previous.data(), row)) + fb * residual).Store(_previous.data(), row);
             });
             return largest;
@@ -92,31 +92,22 @@ public:
         return std::sqrt(FindLargest(maxima));
     }
 
-    /// The first step after Restart, which needs no A: E = 0.
-    void StepFromZero(double a, double b) {
+    /// Starts again at E = 0 for another right side, with the memory kept: what was E_k becomes 0, and E_{k-1} is
+    /// less by it. The step that follows needs no A.
+    void Restart(double a, double b) {
         float const fa = static_cast<float>(a), fb = static_cast<float>(b);
         ForEachChunk(_A.GetNumVertices(), [&](Index begin, Index end) {
             for (Index row = begin; row < end; ++row) {
-                (fb * Row::Load(_right.data(), row) - fa * Row::Load(_previous.data(), row)).Store(_previous.data(), row);
+                Row const before = Row::Load(_previous.data(), row) - Row::Load(_current.data(), row);
+                (fb * Row::Load(_right.data(), row) - fa * before).Store(_previous.data(), row);
+                Row().Store(_current.data(), row);
             }
         });
         std::swap(_current, _previous);
     }
 
-    /// Hands E over, visit(row, E), and goes on from 0 with the same memory: E_k = 0, E_{k-1} less E_k.
-    template <class Visit>
-    void Restart(Visit const& visit) {
-        ForEachChunk(_A.GetNumVertices(), [&](Index begin, Index end) {
-            for (Index row = begin; row < end; ++row) {
-                Row const own = Row::Load(_current.data(), row);
-                visit(row, _current.data() + static_cast<size_t>(row) * kStride);
-                (Row::Load(_previous.data(), row) - own).Store(_previous.data(), row);
-                Row().Store(_current.data(), row);
-            }
-        });
-    }
-
     float* GetRight() { return _right.data(); }
+    float const* Get() const { return _current.data(); }
     static constexpr size_t kStride = FloatRow<Lanes>::kStride;
 
 private:
@@ -156,7 +147,7 @@ public:
         double before = 1e30;
         while (true) {
             double const residual = FindRight();
-            Record(residual);
+            if (!IsUsedUp()) Record(residual);
             _result.residual = residual;
             _result.converged = residual <= _problem.tolerance;
             // Not even half: rounding, divergence, or an eigenvalue that the inner steps cannot see.
@@ -203,7 +194,7 @@ private:
         double const goal = std::max(0.9 * _problem.tolerance, kInnerGain * start);
         double a, b;
         _schedule.Advance(a, b);
-        _correction.StepFromZero(a, b);
+        _correction.Restart(a, b);
         _watch.Add(start);
         while (!IsUsedUp()) {
             _schedule.Advance(a, b);
@@ -229,9 +220,12 @@ private:
     }
 
     void AddCorrection() {
-        _correction.Restart([&](Index row, float const* e) {
-            double* const p = _problem.solution + static_cast<size_t>(row) * Length;
-            for (size_t i = 0; i < Length; ++i) p[i] += _problem.size * static_cast<double>(e[i]);
+        ForEachChunk(_problem.A.GetNumVertices(), [&](Index begin, Index end) {
+            for (Index row = begin; row < end; ++row) {
+                float const* const e = _correction.Get() + static_cast<size_t>(row) * _correction.kStride;
+                double* const p = _problem.solution + static_cast<size_t>(row) * Length;
+                for (size_t i = 0; i < Length; ++i) p[i] += _problem.size * static_cast<double>(e[i]);
+            }
         });
     }
 

@@ -302,8 +302,25 @@ TEST(LimitMatrix, AnEdgeOnlyCornerFollowsTheBoundaryCurve) {
     engine::Scene scene = test::MakeScene({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, {{0, 1, 2, 3}});
     scene.cage.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     Cage const cage = MakeCage("quad", std::move(scene));
-    MatrixXd const limit = LimitMatrix::Build(*cage.refiner).AsMatrix() * GetPositions(cage.scene);
+    MatrixXd const M = GetPositions(cage.scene), limit = LimitMatrix::Build(*cage.refiner).AsMatrix() * M;
     EXPECT_LT((limit.row(0) - Eigen::RowVector3d(1, 1, 0) / 6.0).norm(), 1e-15);
+
+    constexpr int kIsolation = 6;
+    cage.refiner->RefineAdaptive(Far::TopologyRefiner::AdaptiveOptions(kIsolation));
+    double const place = 0.0;
+    Far::LimitStencilTableFactoryReal<double>::LocationArray corner;
+    corner.ptexIdx = 0;
+    corner.numLocations = 1;
+    corner.s = corner.t = &place;
+    std::unique_ptr<Far::LimitStencilTableReal<double> const> const table(
+        Far::LimitStencilTableFactoryReal<double>::Create(*cage.refiner, {corner}));
+    Eigen::RowVector3d theirs = Eigen::RowVector3d::Zero();
+    auto const stencil = table->GetStencil(0);
+    for (int k = 0; k < stencil.GetSize(); ++k) theirs += stencil.GetWeights()[k] * M.row(stencil.GetVertexIndices()[k]);
+    // A third of what is left of the corner, which each level quarters: in both coordinates half of that.
+    double const miss = (limit.row(0) - theirs).norm();
+    EXPECT_GT(miss, 0.1 * std::pow(4.0, -kIsolation));
+    EXPECT_LT(miss, 0.5 * std::pow(4.0, -kIsolation));
 }
 
 TEST(LimitMatrix, RunsInOpenSubdivsEvaluatorAndAsAMatrix) {
