@@ -15,9 +15,9 @@ namespace {
 /// A bound of the eigenvalues of diag(G)^-1 G. With uniform weights G is a sum over faces: a cycle of n edges
 /// that count half each against 1 at each corner, so 3/2 for triangles and at most 2 for others. With weights,
 /// Gershgorin's discs; no more than the 3 corners of a triangle can reach.
-std::vector<float> BoundEigenvalues(Far::TopologyRefiner const& refiner) {
+std::vector<float> BoundEigenvalues(Far::TopologyRefiner const& refiner, int coarsest) {
     std::vector<float> bounds;
-    for (int k = 0; k <= refiner.GetMaxLevel(); ++k) {
+    for (int k = coarsest; k <= refiner.GetMaxLevel(); ++k) {
         auto const level = refiner.GetLevel(k);
         bool const hasTriangles = level.GetNumFaceVertices() == 3 * level.GetNumFaces();
         bounds.push_back(hasTriangles ? 1.5f : 2.0f);
@@ -64,9 +64,9 @@ std::vector<Scalar> Cast(std::vector<double> const& values) {
 }  // namespace
 
 struct Multigrid::Implementation {
-    Implementation(Far::TopologyRefiner const& refiner, FixedVertices fixed)
-        : levels(BuildMultigridLevels(refiner, fixed)), cycle(levels) {
-        cycle.SetWeights(std::vector<RowWeights<float>>(levels.size()), BoundEigenvalues(refiner), true);
+    Implementation(Far::TopologyRefiner const& refiner, FixedVertices fixed, int coarsest)
+        : levels(BuildMultigridLevels(refiner, fixed, coarsest)), cycle(levels) {
+        cycle.SetWeights(std::vector<RowWeights<float>>(levels.size()), BoundEigenvalues(refiner, coarsest), true);
         auto const numRows = static_cast<size_t>(GetFinest().GetNumRows());
         for (auto* rows : {&x, &residual, &direction, &image}) rows->assign(numRows, DoubleRow::Zero());
     }
@@ -187,8 +187,8 @@ SolveReport Multigrid::Solve(std::span<double const> rightSide, std::span<double
     return report;
 }
 
-Multigrid::Multigrid(Far::TopologyRefiner const& refiner, FixedVertices fixed)
-    : _implementation(std::make_unique<Implementation>(refiner, fixed)) {}
+Multigrid::Multigrid(Far::TopologyRefiner const& refiner, FixedVertices fixed, int coarsest)
+    : _implementation(std::make_unique<Implementation>(refiner, fixed, coarsest)) {}
 Multigrid::~Multigrid() = default;
 Multigrid::Multigrid(Multigrid&&) noexcept = default;
 
@@ -200,10 +200,11 @@ void Multigrid::SetWeights(Far::TopologyRefiner const& refiner, std::vector<Edge
         throw Error(ErrorCode::BadOption, fmt::format("Multigrid::SetWeights: {} levels of weights for {} levels",
                                                       weights.size(), self.levels.size()));
     }
+    int const coarsest = refiner.GetMaxLevel() + 1 - static_cast<int>(weights.size());
     std::vector<RowWeights<float>> ordered;
     std::vector<float> bounds;
     for (size_t k = 0; k < weights.size(); ++k) {
-        auto rows = OrderWeights(refiner.GetLevel(static_cast<int>(k)), self.levels[k], weights[k]);
+        auto rows = OrderWeights(refiner.GetLevel(coarsest + static_cast<int>(k)), self.levels[k], weights[k]);
         ordered.push_back({Cast<float>(rows.entries), Cast<float>(rows.diagonals)});
         bounds.push_back(BoundEigenvalues(self.levels[k], rows));
         if (k + 1 == weights.size()) self.weights = std::move(rows);

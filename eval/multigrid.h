@@ -39,13 +39,15 @@ struct EdgeWeights {
 /// Memory    About 250 bytes per unknown on triangles.
 class Multigrid {
 public:
-    /// \param refiner  uniformly refined, with the last level's full topology; not kept
-    /// \throws Error   BadMesh: an equation of the coarsest level that no factorisation exists for
-    Multigrid(Far::TopologyRefiner const& refiner, FixedVertices fixed);
+    /// \param refiner   uniformly refined, with the last level's full topology; not kept
+    /// \param coarsest  the level that is factorised. With the last one the solver is sparse Cholesky: the
+    ///                  reference, and fastest below some hundred unknowns
+    /// \throws Error    BadMesh: an equation of the coarsest level that no factorisation exists for
+    Multigrid(Far::TopologyRefiner const& refiner, FixedVertices fixed, int coarsest = 0);
     ~Multigrid();
     Multigrid(Multigrid&&) noexcept;
 
-    /// Replaces the weights, one entry per level, coarsest first; the numbering stays.
+    /// Replaces the weights, one entry per level from the coarsest; the numbering stays.
     ///
     /// \throws Error  BadOption if sizes do not fit; BadMesh as the constructor, or for a row without a
     ///                positive diagonal

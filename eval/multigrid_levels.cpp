@@ -1,5 +1,6 @@
 #include "eval/multigrid_levels.h"
 
+#include <algorithm>
 
 #include "far_ext/laplacian.h"
 
@@ -77,18 +78,21 @@ void LinkToFiner(Level const& level, std::vector<Index> const& rows, MultigridLe
         auto const ends = level.GetEdgeVertices(edge);
         fine.parents[child] = {rows[ends[0]], rows[ends[1]]};
     }
+    auto const isInFace = [](std::array<Index, 2> const& parents) { return parents[0] < 0; };
+    fine.hasFaceVertices = std::any_of(fine.parents.begin(), fine.parents.end(), isInFace);
 }
 
 }  // namespace
 
-std::vector<MultigridLevel> BuildMultigridLevels(Far::TopologyRefiner const& refiner, FixedVertices fixed) {
-    std::vector<MultigridLevel> graphs(static_cast<size_t>(refiner.GetMaxLevel()) + 1);
+std::vector<MultigridLevel> BuildMultigridLevels(Far::TopologyRefiner const& refiner, FixedVertices fixed, int coarsest) {
+    std::vector<MultigridLevel> graphs;
     std::vector<Index> rows, coarseRows;
-    for (int k = 0; k <= refiner.GetMaxLevel(); ++k) {
+    for (int k = coarsest; k <= refiner.GetMaxLevel(); ++k) {
         Level const level = refiner.GetLevel(k);
-        rows = NumberBreadthFirst(level, fixed, graphs[k]);
-        ListNeighbours(level, rows, graphs[k]);
-        if (k > 0) LinkToFiner(refiner.GetLevel(k - 1), coarseRows, graphs[k - 1], rows, graphs[k]);
+        graphs.emplace_back();
+        rows = NumberBreadthFirst(level, fixed, graphs.back());
+        ListNeighbours(level, rows, graphs.back());
+        if (k > coarsest) LinkToFiner(refiner.GetLevel(k - 1), coarseRows, *(graphs.end() - 2), rows, graphs.back());
         coarseRows.swap(rows);
     }
     return graphs;

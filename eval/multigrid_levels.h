@@ -32,13 +32,14 @@ struct MultigridLevel {
     std::vector<std::array<Index, 2>> parents;  ///< per unknown: rows of the coarser level; {-1, -1} in a face
     std::vector<Index> children;    ///< per unknown: its own row on the finer level; empty on the finest
     std::vector<Block> blocks;      ///< in order; together all unknowns
+    bool hasFaceVertices = false;   ///< whether some parents are {-1, -1}
 
     Index GetNumRows() const { return static_cast<Index>(vertices.size()); }
 };
 
-/// Graphs of all levels, coarsest first.
+/// Graphs of the levels from `coarsest` to the last, coarsest first.
 ///
 /// \param refiner  uniformly refined, with the last level's full topology
-std::vector<MultigridLevel> BuildMultigridLevels(Far::TopologyRefiner const& refiner, FixedVertices fixed);
+std::vector<MultigridLevel> BuildMultigridLevels(Far::TopologyRefiner const& refiner, FixedVertices fixed, int coarsest = 0);
 
 }  // namespace limn::eval

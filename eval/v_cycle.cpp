@@ -1,7 +1,5 @@
 #include "eval/v_cycle.h"
 
-#include <algorithm>
-
 #include "far_ext/error.h"
 
 namespace limn::eval {
@@ -126,7 +124,6 @@ void VCycle::Smooth(size_t k, bool startsAtZero) {
 void VCycle::Restrict(size_t k) {
     MultigridLevel const &fine = _levels[k], &coarse = _levels[k - 1];
     FloatRow const* const residual = _work[k].next.data();
-    bool const hasFaceVertices = std::find(fine.parents.begin(), fine.parents.end(), std::array<Index, 2>{-1, -1}) != fine.parents.end();
     ForEachRow(coarse.numUnknowns, [&](Index row) {
         Index const child = coarse.children[row];
         FloatRow sum = FloatRow::Zero();
@@ -134,7 +131,7 @@ void VCycle::Restrict(size_t k) {
             Index const middle = fine.neighbours[i];
             if (middle >= fine.numUnknowns) continue;
             sum += residual[middle];
-            if (!hasFaceVertices) continue;
+            if (!fine.hasFaceVertices) continue;
             for (int j = fine.offsets[middle]; j < fine.offsets[middle + 1]; ++j) {
                 Index const face = fine.neighbours[j];
                 if (face >= fine.numUnknowns || fine.parents[face][0] >= 0) continue;
