@@ -95,6 +95,22 @@ std::array<double, 3> SplitArea(Triangle const& triangle) {
     return shares;
 }
 
+/// Cotangent weights per edge, and mixed Voronoi areas per vertex where asked for.
+std::vector<double> MeasureCotangents(Level const& level, std::span<double const> positions, std::vector<double>* areas) {
+    if (areas) areas->assign(static_cast<size_t>(level.GetNumVertices()), 0.0);
+    std::vector<double> weights(static_cast<size_t>(level.GetNumEdges()), 0.0);
+    for (Index face = 0; face < level.GetNumFaces(); ++face) {
+        Triangle const triangle = MeasureTriangle(level, positions, face);
+        auto const shares = SplitArea(triangle);
+        auto const edges = level.GetFaceEdges(face);
+        for (int k = 0; k < 3; ++k) {
+            if (areas) (*areas)[triangle.vertices[k]] += shares[k];
+            weights[edges[(k + 1) % 3]] += 0.5 * triangle.cotangents[k];  // edge k + 1 lies opposite corner k
+        }
+    }
+    return weights;
+}
+
 double FindMeanEdgeLength(Level const& level, std::span<double const> positions) {
     double sum = 0.0;
     for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
@@ -165,17 +181,7 @@ SparseRows BuildCombinatorialLaplacian(Level const& level) {
 AreaLaplacian BuildCotangentLaplacian(Level const& level, std::span<double const> positions) {
     CheckBoundary(level);
     AreaLaplacian laplacian;
-    laplacian.areas.assign(static_cast<size_t>(level.GetNumVertices()), 0.0);
-    std::vector<double> weights(static_cast<size_t>(level.GetNumEdges()), 0.0);
-    for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        Triangle const triangle = MeasureTriangle(level, positions, face);
-        auto const shares = SplitArea(triangle);
-        auto const edges = level.GetFaceEdges(face);
-        for (int k = 0; k < 3; ++k) {
-            laplacian.areas[triangle.vertices[k]] += shares[k];
-            weights[edges[(k + 1) % 3]] += 0.5 * triangle.cotangents[k];  // edge k + 1 lies opposite corner k
-        }
-    }
+    std::vector<double> const weights = MeasureCotangents(level, positions, &laplacian.areas);
     WeightRow row;
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
         auto const edges = level.GetVertexEdges(vertex);
@@ -190,6 +196,10 @@ AreaLaplacian BuildCotangentLaplacian(Level const& level, std::span<double const
         laplacian.rows.AddRow(row);
     }
     return laplacian;
+}
+
+std::vector<double> FindCotangentWeights(Level const& level, std::span<double const> positions) {
+    return MeasureCotangents(level, positions, nullptr);
 }
 
 AreaLaplacian BuildHeatLaplacian(Level const& level, std::span<double const> positions, HeatKernel* kernel) {

@@ -51,6 +51,9 @@ struct AreaLaplacian {
 /// Source  [Zhu11] Sec. 3.1, its references [30] and [31]
 AreaLaplacian BuildCotangentLaplacian(Far::TopologyLevel const& level, std::span<double const> positions);
 
+/// Its weights alone, per edge of the level.
+std::vector<double> FindCotangentWeights(Far::TopologyLevel const& level, std::span<double const> positions);
+
 /// How the mesh Laplace operator was cut off.
 struct HeatKernel {
     double time = 0.0;    ///< t: the square of the mean edge length
