@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "eval/curve.h"
 #include "eval/row_blocks.h"
 #include "far_ext/error.h"
 #include "far_ext/laplacian.h"
@@ -75,32 +76,16 @@ void Reconstructor::ChooseHandles(Far::TopologyRefiner const& refiner, std::span
     }
 }
 
-/// v_i - (v_(i-1) + v_(i+1)) / 2 = delta_i round a loop: edges differ by twice delta, their sum is 0. \return the defect
+/// A boundary loop as a curve, moved so that its handle stays. \return the compatibility defect
 double Reconstructor::SolveLoop(std::vector<Index> const& loop, Index handle, std::span<double const> deltas,
                                 std::span<double> positions) const {
-    auto const size = static_cast<double>(loop.size());
-    DoubleRow sum = DoubleRow::Zero();
-    double lengths = 0.0;
-    for (Index vertex : loop) {
-        sum += Get(deltas, vertex);
-        lengths += std::sqrt(Get(deltas, vertex).square().sum());
-    }
-    DoubleRow const mean = sum / size, place = Get(positions, handle);
-    DoubleRow edge = DoubleRow::Zero(), at = DoubleRow::Zero(), drift = DoubleRow::Zero();
-    for (Index vertex : loop) {  // edge i leaves vertex i
-        edge -= 2.0 * (Get(deltas, vertex) - mean);
-        drift += edge;
-    }
-    edge = -drift / size;
-    for (Index vertex : loop) {
-        Set(positions, vertex, at);
-        edge -= 2.0 * (Get(deltas, vertex) - mean);
-        at += edge;
-    }
-    DoubleRow const shift = place - Get(positions, handle);
-    for (Index vertex : loop) Set(positions, vertex, Get(positions, vertex) + shift);
-    Set(positions, handle, place);  // to the last bit
-    return RelativeDefect(sum, lengths);
+    std::vector<DoubleRow> ofLoop, points;
+    for (Index vertex : loop) ofLoop.push_back(Get(deltas, vertex));
+    double const defect = SolveClosedCurve(ofLoop, points);
+    DoubleRow const place = Get(positions, handle);
+    auto const at = static_cast<size_t>(std::find(loop.begin(), loop.end(), handle) - loop.begin());
+    for (size_t i = 0; i < loop.size(); ++i) Set(positions, loop[i], points[i] - points[at] + place);
+    return defect;
 }
 
 /// Delta - d (d . Delta) / (d . d) for the degrees d, the left null vector; rightSide holds d Delta. \return the defect

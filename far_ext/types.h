@@ -1,6 +1,7 @@
 #pragma once
 
 #include <opensubdiv/far/types.h>
+#include <opensubdiv/sdc/types.h>
 
 namespace limn {
 

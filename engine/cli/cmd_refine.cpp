@@ -1,9 +1,13 @@
+#include <algorithm>
+#include <chrono>
+
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
 #include "engine/differential.h"
 #include "engine/io/edit_reader.h"
 #include "engine/io/mesh_writer.h"
+#include "engine/io/polyline_file.h"
 #include "engine/options_text.h"
 #include "engine/refine.h"
 #include "far_ext/error.h"
@@ -19,7 +23,7 @@ struct RefineArguments {
     std::optional<std::string> rule;
     int levels = 1, dirMagLevels = 0, spatialLevels = 0;
     std::vector<int> handles;
-    bool toLimit = false, keepsResult = false;
+    bool toLimit = false, keepsResult = false, isCurve = false;
 
     bool IsDifferential() const { return space == "differential"; }
 };
@@ -84,7 +88,40 @@ void CheckSpace(RefineArguments const& a, CLI::App const& verb) {
     }
 }
 
+/// Polylines by the rule that boundaries follow: cubic B-spline, or four-point for butterfly.
+int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& context) {
+    for (char const* name : {"--laplacian", "--dirmag", "--spatial-first", "--handle", "--solver", "--edit", "--keep-result", "--limit"}) {
+        if (verb.count(name)) throw Error(ErrorCode::BadOption, fmt::format("{} means nothing with --curve; leave it out", name));
+    }
+    auto const rule = a.rule == "butterfly" ? eval::CurveRule::FourPoint : eval::CurveRule::CubicBSpline;
+    auto curves = engine::ReadPolylines(a.mesh);
+    eval::CurveReport worst;
+    size_t numPoints = 0;
+    auto const start = std::chrono::steady_clock::now();
+    for (eval::Curve& curve : curves) {
+        if (a.IsDifferential()) {
+            eval::CurveReport report;
+            curve = eval::RefineCurveDifferentially(curve, rule, a.levels, &report);
+            worst.residual = std::max(worst.residual, report.residual);
+            worst.compatibilityDefect = std::max(worst.compatibilityDefect, report.compatibilityDefect);
+        } else {
+            for (int level = 0; level < a.levels; ++level) curve = eval::SubdivideCurve(curve, rule);
+        }
+        numPoints += curve.points.size();
+    }
+    std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - start;
+    engine::WritePolylines(a.output, curves, context.GetCommon().IsDouble());
+    auto& report = context.GetReport();
+    report["inputs"].push_back({{"path", a.mesh}, {"sha256", engine::Sha256OfFile(a.mesh)}, {"curves", curves.size()}});
+    report["vertices"] = report["unknowns"] = numPoints;
+    report["solve_seconds"] = elapsed.count();
+    report["residual"] = worst.residual;
+    report["compatibility_defect"] = worst.compatibilityDefect;
+    return kDone;
+}
+
 int RunRefine(RefineArguments const& a, CLI::App const& verb, Context& context) {
+    if (a.isCurve) return RefineCurves(a, verb, context);
     CheckSpace(a, verb);
     auto [scene, refiner] = context.Load(a.mesh);
     SubdivisionRule const rule = ChooseRule(a, context.GetCommon(), scene.cage);
@@ -116,6 +153,7 @@ Verb AddRefine(CLI::App& app) {
     verb->add_option("--rule", a->rule, "loop, catmark or butterfly (default: the scheme's)")
         ->check(CLI::IsMember({"loop", "catmark", "butterfly"}));
     verb->add_flag("--limit", a->toLimit, "move the result's vertices to the limit surface");
+    verb->add_flag("--curve", a->isCurve, "MESH holds polylines (OBJ 'l'); their rule is cubic B-spline, for butterfly four-point");
     auto const differential = [](CLI::Option* option) { return option->group("Options of --space differential"); };
     differential(verb->add_option("--laplacian", a->laplacian, "combinatorial (default), cotangent or mesh"))
         ->check(CLI::IsMember({"combinatorial", "cotangent", "mesh"}));
