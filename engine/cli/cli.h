@@ -76,6 +76,7 @@ Verb AddInfo(CLI::App& app);
 Verb AddEval(CLI::App& app);
 Verb AddBake(CLI::App& app);
 Verb AddRefine(CLI::App& app);
+Verb AddMeasure(CLI::App& app);
 
 /// Exit statuses that are not failures of the program.
 inline constexpr int kDone = 0, kNotReached = 4;

@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
     app.get_formatter()->column_width(34);
     CommonOptions common;
     std::vector<limn::cli::Verb> const verbs{limn::cli::AddInfo(app), limn::cli::AddEval(app), limn::cli::AddBake(app),
-                                             limn::cli::AddRefine(app)};
+                                             limn::cli::AddRefine(app), limn::cli::AddMeasure(app)};
     for (auto const& verb : verbs) AddCommonOptions(*verb.app, common);
     try {
         app.parse(argc, argv);

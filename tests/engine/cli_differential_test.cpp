@@ -97,5 +97,31 @@ TEST_F(DifferentialCli, CurvesGoThrough) {
     }
 }
 
+TEST_F(DifferentialCli, MeasureTellsAllAndWritesWhatIsAskedFor) {
+    for (char const* surface : {"limit", "mesh"}) {
+        auto const outcome = Limn({"measure", Mesh("icosa"), "--scheme", "loop", "--surface", surface, "-o", folder / surface, "--highlight",
+                                   "--picture", "--view", "0,0,1"});
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        json const found = json::parse(outcome.out);
+        for (char const* key : {"area", "volume", "euler_characteristic", "thin_plate_energy", "thin_plate_energy_area"}) {
+            EXPECT_TRUE(found[key].is_number()) << key;
+        }
+        for (char const* key : {"mean_curvature", "gaussian_curvature"}) {
+            for (char const* part : {"min", "max", "mean", "stddev"}) EXPECT_TRUE(found[key][part].is_number());
+        }
+        EXPECT_EQ(found["gauss_bonnet"][0]["audited"], true);
+        EXPECT_EQ(engine::ReadMesh(folder / (std::string(surface) + ".ply")).primvars.size(), 4u);
+        for (char const* ending : {".highlight.png", ".mean.png"}) {
+            EXPECT_TRUE(test::ReadText(folder / (surface + std::string(ending))).starts_with("\x89PNG"));
+        }
+    }
+    auto const open = Limn({"measure", Mesh("gridholetri"), "--surface", "mesh"});
+    EXPECT_TRUE(json::parse(open.out)["volume"].is_null());
+    EXPECT_EQ(Limn({"measure", Mesh("icosa"), "--highlight"}).status, 2);
+    EXPECT_EQ(Limn({"measure", Mesh("icosa"), "--picture", "-o", folder / "a", "--view", "0,0,0"}).status, 2);
+    EXPECT_EQ(Limn({"measure", Mesh("icosa"), "--report", "-"}).status, 2);
+    EXPECT_EQ(Limn({"measure", folder / "none.obj"}).status, 5);
+}
+
 }  // namespace
 }  // namespace limn

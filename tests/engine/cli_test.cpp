@@ -80,7 +80,7 @@ TEST_F(Cli, VersionGoesToStdout) {
 }
 
 TEST_F(Cli, HelpOfEveryVerbShowsAnExample) {
-    for (std::string const verb : {"info", "eval", "bake", "refine"}) {
+    for (std::string const verb : {"info", "eval", "bake", "refine", "measure"}) {
         Outcome const outcome = Limn({verb, "--help"});
         EXPECT_EQ(outcome.status, 0) << verb;
         size_t const example = outcome.out.find("Example:");
