@@ -197,7 +197,10 @@ void CheckOptions(Scene const& scene, int levels, DifferentialOptions const& opt
     for (auto const& rotation : options.edit.rotations) check(rotation.vertex);
 }
 
-void Warn(DifferentialOptions const& options, DifferentialReport& report) {
+void Warn(Scene const& scene, DifferentialOptions const& options, DifferentialReport& report) {
+    if (!scene.cage.creaseSharpness.empty()) {
+        report.warnings.push_back("creases get round: differential coordinates hold no tangents; refine this mesh in space");
+    }
     if (report.tangentialShare > eval::kDirMagLimit && options.dirMagLevels > 0) {
         report.warnings.push_back(fmt::format("tangential parts are {:.2f} of the differential coordinates, more than {}: --dirmag "
                                               "takes them for normals; leave it out",
@@ -223,7 +226,7 @@ Scene RefineDifferentially(Scene const& scene, int levels, DifferentialOptions c
     DifferentialRefinement refinement(scene, levels, options, orientation, report);
     Scene fine = RefineAllButPositions(scene, refinement.GetRefiner());
     fine.positions = refinement.Run();
-    Warn(options, report);
+    Warn(scene, options, report);
     return fine;
 }
 

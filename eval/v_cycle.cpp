@@ -6,7 +6,8 @@ namespace limn::eval {
 
 namespace {
 
-// Two sweeps and this share of the spectrum took the fewest seconds; three need fewer iterations that cost more.
+// Took the least time of 1 to 3 sweeps and shares of 3 to 6: 324 k irregular unknowns need 6 iterations, with one sweep 9
+// and 8 % more time, with three 6 and 20 % more.
 constexpr int kSweeps = 2;
 constexpr float kSmoothedShare = 4.0f;
 

@@ -135,6 +135,19 @@ TEST(Multigrid, SolvesWithinFewIterations) {
     }
 }
 
+// A boundary that is free: constants, too, are, and the transfer still serves.
+TEST(Multigrid, AFreeBoundaryConverges) {
+    for (auto const& scene : {test::LoadDifferential("gridholetri", Sdc::SCHEME_LOOP), test::MakeFan(6, Sdc::SCHEME_CATMARK, 0.1, 0.0)}) {
+        auto const refiner = test::MakeRefiner(scene, 4);
+        eval::Multigrid multigrid(*refiner, FixedVertices::None);
+        auto const size = 3 * static_cast<size_t>(refiner->GetLevel(4).GetNumVertices());
+        std::vector<double> x(size, 0.0);
+        auto const report = multigrid.Solve(RandomValues(size, 4), x);
+        EXPECT_TRUE(report.converged);
+        EXPECT_LE(report.iterations, 20);
+    }
+}
+
 // With masses and weights the equation is regular everywhere; the other road is a factorisation.
 TEST(Multigrid, AgreesWithCholesky) {
     auto const scene = test::LoadDifferential("icosa", Sdc::SCHEME_LOOP);

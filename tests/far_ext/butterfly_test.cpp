@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "far_ext/subdivision_rows.h"
 #include "support/refined.h"
 
 namespace limn {
@@ -54,6 +55,16 @@ TEST(Butterfly, ThreeFacesAtAnEdgeAreRefused) {
                                        Sdc::SCHEME_LOOP);
     auto const refiner = test::MakeRefiner(scene, 1);
     EXPECT_NE(test::RefusalOf([&] { far_ext::BuildButterfly(*refiner, 1); }), "");
+}
+
+// The other rules' tables are what OpenSubdiv does to values.
+TEST(SubdivisionRows, AreOpenSubdivs) {
+    for (auto const& scene : {test::MakeCube(), test::MakeBipyramid(7), test::MakeFan(5, Sdc::SCHEME_CATMARK, 0.1, 0.2)}) {
+        auto const refiner = test::MakeRefiner(scene, 2);
+        auto const rows = far_ext::BuildSubdivisionRows(*refiner, 1, far_ext::SubdivisionRule::Scheme);
+        auto const fine = test::Apply(rows, scene.positions);
+        EXPECT_LT(test::LargestDifference(fine, eval::RefineValues<3>(*refiner, 1, scene.positions)), 1e-15);
+    }
 }
 
 }  // namespace
