@@ -191,7 +191,8 @@ void CheckOptions(Scene const& scene, int levels, DifferentialOptions const& opt
     }
     auto const check = [&](Index vertex) {
         if (vertex >= 0 && vertex < scene.cage.numVertices) return;
-        throw Error(ErrorCode::BadMesh, fmt::format("the edit names vertex {}; there are 0 to {}", vertex, scene.cage.numVertices - 1));
+        throw Error(ErrorCode::BadMesh,
+                    fmt::format("the edit names vertex {}; there are 0 to {}", vertex, scene.cage.numVertices - 1));
     };
     for (auto const& factor : options.edit.factors) check(factor.vertex);
     for (auto const& rotation : options.edit.rotations) check(rotation.vertex);

@@ -25,7 +25,8 @@ constexpr double kPi = 3.14159265358979323846;
 struct Sums {
     double area = 0.0, volume = 0.0, bending = 0.0, mean = 0.0, meanSquares = 0.0;
     double gaussian = 0.0, gaussianSquares = 0.0, gaussianMagnitude = 0.0;
-    double minMean = std::numeric_limits<double>::infinity(), maxMean = -minMean, minGaussian = minMean, maxGaussian = -minMean;
+    double minMean = std::numeric_limits<double>::infinity(), maxMean = -minMean;
+    double minGaussian = minMean, maxGaussian = -minMean;
     size_t count = 0;
 
     void AddCurvature(double share, double k1, double k2) {
@@ -94,7 +95,8 @@ void Surveyor::FindComponents() {
     auto const graph = eval::BuildMultigridLevels(_refiner, eval::FixedVertices::None).front();
     std::vector<int> blockOf(graph.vertices.size(), -1);
     for (size_t block = 0; block < graph.blocks.size(); ++block) {
-        for (Index row = graph.blocks[block].begin; row < graph.blocks[block].end; ++row) blockOf[graph.vertices[row]] = static_cast<int>(block);
+        auto const [begin, end, isSingular] = graph.blocks[block];
+        for (Index row = begin; row < end; ++row) blockOf[graph.vertices[row]] = static_cast<int>(block);
     }
     std::map<int, int> numbers;
     for (Index face = 0; face < _level.GetNumFaces(); ++face) {
@@ -216,11 +218,13 @@ Measurement Surveyor::Conclude(std::vector<Sums> const& ofComponents, MeasuredSu
 }
 
 /// k1 and k2 of every vertex, exact ones of the limit.
-std::array<std::vector<double>, 2> FindLimitCurvature(Scene const& scene, Far::TopologyRefiner const& refiner, double orientation) {
+std::array<std::vector<double>, 2> FindLimitCurvature(Scene const& scene, Far::TopologyRefiner const& refiner,
+                                                      double orientation) {
     eval::LimitSurface const surface(refiner);
     eval::FaceTree tree(surface, scene.positions, 3);
     std::vector<char> isDone(static_cast<size_t>(scene.cage.numVertices), 0);
-    std::array<std::vector<double>, 2> curvatures{std::vector<double>(isDone.size(), 0.0), std::vector<double>(isDone.size(), 0.0)};
+    std::vector<double> const zeros(isDone.size(), 0.0);
+    std::array<std::vector<double>, 2> curvatures{zeros, zeros};
     for (Index face = 0; face < surface.GetNumFaces(); ++face) {
         if (!surface.HasLimit(face)) continue;
         CheckInterrupted();

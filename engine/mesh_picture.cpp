@@ -23,7 +23,10 @@ using Vector = Eigen::Vector3d;
 class MeshPicture {
 public:
     MeshPicture(Scene const& scene, PictureView const& view)
-        : _scene(scene), _size(view.size), _depth(NumPixels(), -std::numeric_limits<double>::infinity()), _values(NumPixels(), 0.0f),
+        : _scene(scene),
+          _size(view.size),
+          _depth(NumPixels(), -std::numeric_limits<double>::infinity()),
+          _values(NumPixels(), 0.0f),
           _coverage(NumPixels(), 0.0f) {
         Vector const from(view.from[0], view.from[1], view.from[2]);
         if (!(from.norm() > 0.0)) throw Error(ErrorCode::BadOption, "--view 0,0,0 is no direction");
@@ -66,7 +69,9 @@ private:
 
     void FitToPicture() {
         Eigen::AlignedBox2d box;
-        for (Index vertex : _scene.cage.faceVertices) box.extend(Eigen::Vector2d(PointOf(vertex).dot(_right), PointOf(vertex).dot(_up)));
+        for (Index vertex : _scene.cage.faceVertices) {
+            box.extend(Eigen::Vector2d(PointOf(vertex).dot(_right), PointOf(vertex).dot(_up)));
+        }
         double const extent = box.sizes().maxCoeff();
         _scale = extent > 0.0 ? 0.94 * _size / extent : 1.0;
         _centre = box.center();
@@ -75,7 +80,8 @@ private:
     /// Pixel coordinates, and height towards the eye.
     Vector Project(Index vertex) const {
         Vector const p = PointOf(vertex);
-        return {0.5 * _size + _scale * (p.dot(_right) - _centre.x()), 0.5 * _size - _scale * (p.dot(_up) - _centre.y()), p.dot(_toEye)};
+        double const x = p.dot(_right) - _centre.x(), y = p.dot(_up) - _centre.y();
+        return {0.5 * _size + _scale * x, 0.5 * _size - _scale * y, p.dot(_toEye)};
     }
 
     void DrawTriangle(std::array<Index, 3> const& corners, Shade const& shade) {
@@ -132,7 +138,10 @@ void WriteHighlightPicture(std::string const& path, Scene const& scene, PictureV
     constexpr double kStripes = 24.0;  // from one horizon to the other
     picture.Draw([&](Vector const& weights, std::array<Index, 3> const& corners) {
         Vector normal = Vector::Zero();
-        for (int k = 0; k < 3; ++k) normal += weights[k] * Vector(&normals[3 * static_cast<size_t>(corners[static_cast<size_t>(k)])]);
+        for (int k = 0; k < 3; ++k) {
+            auto const corner = static_cast<size_t>(corners[static_cast<size_t>(k)]);
+            normal += weights[k] * Vector(&normals[3 * corner]);
+        }
         // Strip lights far away, side by side: the reflected ray's height tells which one is met.
         normal.normalize();
         Vector const ray = 2.0 * normal.dot(picture.GetDirectionToEye()) * normal - picture.GetDirectionToEye();

@@ -46,7 +46,8 @@ struct Misfit {
 
 class AreaFit {
 public:
-    AreaFit(Far::TopologyRefiner const& refiner, Multigrid& multigrid, LaplacianBuilder const& build, std::span<double const> deltas)
+    AreaFit(Far::TopologyRefiner const& refiner, Multigrid& multigrid, LaplacianBuilder const& build,
+            std::span<double const> deltas)
         : _refiner(refiner), _multigrid(multigrid), _finest(multigrid.GetLevels().back()), _build(build), _deltas(deltas) {}
 
     Misfit Measure(std::span<double const> positions) const {
@@ -66,7 +67,8 @@ public:
     }
 
     /// The misfit of moved positions; its squares are not a number where they have no Laplacian.
-    Misfit TryMove(std::span<double const> positions, std::vector<double> const& step, double share, std::vector<double>& moved) const {
+    Misfit TryMove(std::span<double const> positions, std::vector<double> const& step, double share,
+                   std::vector<double>& moved) const {
         moved.assign(positions.begin(), positions.end());
         for (size_t i = 0; i < moved.size(); ++i) moved[i] += share * step[i];
         try {

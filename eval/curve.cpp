@@ -74,7 +74,8 @@ double SolveClosedCurve(std::vector<DoubleRow> const& deltas, std::vector<Double
     return lengths > 0.0 ? LengthOf(sum) / lengths : 0.0;
 }
 
-void SolveOpenCurve(std::vector<DoubleRow> const& deltas, DoubleRow const& first, DoubleRow const& last, std::vector<DoubleRow>& points) {
+void SolveOpenCurve(std::vector<DoubleRow> const& deltas, DoubleRow const& first, DoubleRow const& last,
+                    std::vector<DoubleRow>& points) {
     size_t const numEdges = deltas.size() - 1;
     DoubleRow edge = DoubleRow::Zero(), drift = DoubleRow::Zero();
     for (size_t i = 1; i < numEdges; ++i) {

@@ -32,7 +32,8 @@ std::vector<DoubleRow> FindCurveDeltas(Curve const& curve);
 double SolveClosedCurve(std::vector<DoubleRow> const& deltas, std::vector<DoubleRow>& points);
 
 /// The open curve with given deltas (those of the ends are not used) between given ends.
-void SolveOpenCurve(std::vector<DoubleRow> const& deltas, DoubleRow const& first, DoubleRow const& last, std::vector<DoubleRow>& points);
+void SolveOpenCurve(std::vector<DoubleRow> const& deltas, DoubleRow const& first, DoubleRow const& last,
+                    std::vector<DoubleRow>& points);
 
 /// What became of a curve in differential space.
 struct CurveReport {

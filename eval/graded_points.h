@@ -24,7 +24,9 @@ public:
             if (numDomains > 1) {
                 irregular = (IsIrregular(vertices[domain]) ? 1u : 0u) | 4u;  // the middle of the face lies opposite
             } else {
-                for (int corner = 0; corner < vertices.size(); ++corner) irregular |= IsIrregular(vertices[corner]) ? 1u << corner : 0u;
+                for (int corner = 0; corner < vertices.size(); ++corner) {
+                    if (IsIrregular(vertices[corner])) irregular |= 1u << corner;
+                }
             }
             if (_surface.IsLoop()) VisitTriangle(domain, {0, 0}, {1, 0}, {0, 1}, irregular, 0, visit);
             else VisitSquare(domain, 0.0, 0.0, 1.0, irregular, 0, visit);
@@ -75,8 +77,9 @@ private:
             double const width = 1.0 - kNodes[j];  // a triangle is the square with one side collapsed
             for (int i = 0; i < 3; ++i) {
                 double const u = kNodes[i] * width, v = kNodes[j];
-                visit(FacePlace{domain, a[0] + u * (b[0] - a[0]) + v * (c[0] - a[0]), a[1] + u * (b[1] - a[1]) + v * (c[1] - a[1])},
-                      area * kWeights[i] * kWeights[j] * width);
+                double const s = a[0] + u * (b[0] - a[0]) + v * (c[0] - a[0]);
+                double const t = a[1] + u * (b[1] - a[1]) + v * (c[1] - a[1]);
+                visit(FacePlace{domain, s, t}, area * kWeights[i] * kWeights[j] * width);
             }
         }
     }

@@ -219,7 +219,8 @@ size_t Multigrid::GetNumBytes() const {
     size_t bytes = self.cycle.GetNumBytes() + sizeOf(self.weights.entries) + sizeOf(self.weights.diagonals);
     for (auto const* rows : {&self.x, &self.residual, &self.direction, &self.image}) bytes += sizeOf(*rows);
     for (MultigridLevel const& level : self.levels) {
-        bytes += sizeOf(level.vertices) + sizeOf(level.offsets) + sizeOf(level.neighbours) + sizeOf(level.parents) + sizeOf(level.children);
+        bytes += sizeOf(level.vertices) + sizeOf(level.offsets) + sizeOf(level.neighbours) + sizeOf(level.parents) +
+                 sizeOf(level.children);
     }
     return bytes;
 }

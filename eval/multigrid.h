@@ -11,7 +11,7 @@ namespace limn::eval {
 /// What became of an iteration. Not converging is an answer: the caller decides.
 struct SolveReport {
     int iterations = 0;
-    double residual = 0.0;  ///< |b - G x| / |b|, of the solution handed back
+    double residual = 0.0;  ///< |b - G x| / |b| of the solution handed back; where b = 0, over what it started from
     bool converged = false;
 };
 

@@ -44,7 +44,8 @@ public:
 
 private:
     void ChooseHandles(Far::TopologyRefiner const& refiner, std::span<Index const> handles);
-    double SolveLoop(std::vector<Index> const& loop, Index handle, std::span<double const> deltas, std::span<double> positions) const;
+    double SolveLoop(std::vector<Index> const& loop, Index handle, std::span<double const> deltas,
+                     std::span<double> positions) const;
     double ProjectBlock(MultigridLevel::Block const& block, std::span<double> rightSide) const;
 
     Multigrid _multigrid;

@@ -224,7 +224,8 @@ AreaLaplacian BuildHeatLaplacian(Level const& level, std::span<double const> pos
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
         if (AddBoundaryRow(level, vertex, laplacian.rows)) continue;
         if (level.GetVertexEdges(vertex).size() > 0) {
-            tree.radiusSearch(&positions[3 * static_cast<size_t>(vertex)], squaredRadius, near, nanoflann::SearchParams(32, 0.0f, false));
+            tree.radiusSearch(&positions[3 * static_cast<size_t>(vertex)], squaredRadius, near,
+                              nanoflann::SearchParams(32, 0.0f, false));
             std::sort(near.begin(), near.end());  // by index: the order of sums does not depend on the tree
             double sum = 0.0;
             for (auto& [index, square] : near) {

@@ -76,7 +76,9 @@ Verb AddMeasure(CLI::App& app) {
         ->check(CLI::IsMember({"limit", "mesh"}));
     verb->add_flag("--highlight", a->hasHighlight, "also write PREFIX.highlight.png: highlight lines of the mesh");
     verb->add_flag("--picture", a->hasPicture, "also write PREFIX.mean.png: the mesh in colours of mean curvature");
-    verb->add_option("--view", a->view, "pictures: the side that is seen, x,y,z (default 1,0.6,0.8)")->delimiter(',')->expected(3);
+    verb->add_option("--view", a->view, "pictures: the side that is seen, x,y,z (default 1,0.6,0.8)")
+        ->delimiter(',')
+        ->expected(3);
     verb->footer("Example:\n  limn measure scenes/spot/spot.obj -o out/spot --highlight");
     return {verb, [a](Context& context) { return RunMeasure(*a, context); }};
 }

@@ -18,6 +18,10 @@ namespace {
 
 using far_ext::SubdivisionRule;
 
+/// Options that only meshes in differential space have.
+constexpr char const* kDifferentialOptions[] = {"--laplacian", "--dirmag", "--spatial-first", "--handle",
+                                                "--solver",    "--edit",   "--keep-result"};
+
 struct RefineArguments {
     std::string mesh, output, space = "spatial", laplacian = "combinatorial", solver = "multigrid", editPath;
     std::optional<std::string> rule;
@@ -72,27 +76,31 @@ bool RefineDifferentially(RefineArguments const& a, Context& context, Subdivisio
     report["thin_plate_energy"] = found.energy.mean;
     report["thin_plate_energy_area"] = found.energy.integral;
     if (!found.converged) {
-        context.GetJob().Warn(fmt::format("the solver stopped at residual {:.1e} after {} iterations{}", found.residual, found.iterations,
-                                          a.keepsResult ? "" : "; nothing is written without --keep-result"));
+        context.GetJob().Warn(fmt::format("the solver stopped at residual {:.1e} after {} iterations{}", found.residual,
+                                          found.iterations, a.keepsResult ? "" : "; nothing is written without --keep-result"));
     }
     return found.converged;
 }
 
 void CheckSpace(RefineArguments const& a, CLI::App const& verb) {
     if (a.IsDifferential()) {
-        if (a.toLimit) throw Error(ErrorCode::BadOption, "--limit: the limit of --space differential has no closed form; leave it out");
+        if (a.toLimit) {
+            throw Error(ErrorCode::BadOption, "--limit: the limit of --space differential has no closed form; leave it out");
+        }
         return;
     }
-    for (char const* name : {"--laplacian", "--dirmag", "--spatial-first", "--handle", "--solver", "--edit", "--keep-result"}) {
+    for (char const* name : kDifferentialOptions) {
         if (verb.count(name)) throw Error(ErrorCode::BadOption, fmt::format("{} needs --space differential", name));
     }
 }
 
 /// Polylines by the rule that boundaries follow: cubic B-spline, or four-point for butterfly.
 int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& context) {
-    for (char const* name : {"--laplacian", "--dirmag", "--spatial-first", "--handle", "--solver", "--edit", "--keep-result", "--limit"}) {
+    auto const refuse = [&](char const* name) {
         if (verb.count(name)) throw Error(ErrorCode::BadOption, fmt::format("{} means nothing with --curve; leave it out", name));
-    }
+    };
+    std::for_each(std::begin(kDifferentialOptions), std::end(kDifferentialOptions), refuse);
+    refuse("--limit");
     auto const rule = a.rule == "butterfly" ? eval::CurveRule::FourPoint : eval::CurveRule::CubicBSpline;
     auto curves = engine::ReadPolylines(a.mesh);
     eval::CurveReport worst;
@@ -153,7 +161,8 @@ Verb AddRefine(CLI::App& app) {
     verb->add_option("--rule", a->rule, "loop, catmark or butterfly (default: the scheme's)")
         ->check(CLI::IsMember({"loop", "catmark", "butterfly"}));
     verb->add_flag("--limit", a->toLimit, "move the result's vertices to the limit surface");
-    verb->add_flag("--curve", a->isCurve, "MESH holds polylines (OBJ 'l'); their rule is cubic B-spline, for butterfly four-point");
+    verb->add_flag("--curve", a->isCurve,
+                   "MESH holds polylines (OBJ 'l'); their rule is cubic B-spline, for butterfly four-point");
     auto const differential = [](CLI::Option* option) { return option->group("Options of --space differential"); };
     differential(verb->add_option("--laplacian", a->laplacian, "combinatorial (default), cotangent or mesh"))
         ->check(CLI::IsMember({"combinatorial", "cotangent", "mesh"}));

@@ -77,8 +77,13 @@ private:
     std::array<double, 3> AxisOf(Json const& entry) const {
         bool const isAxis = entry.contains("axis") && entry["axis"].is_array() && entry["axis"].size() == 3;
         std::array<double, 3> axis{};
-        for (size_t c = 0; isAxis && c < 3; ++c) axis[c] = entry["axis"][c].is_number() ? entry["axis"][c].get<double>() : 0.0;
-        if (!(std::hypot(axis[0], axis[1], axis[2]) > 0.0)) Refuse(fmt::format("'rotate': {} has no axis of three numbers", entry.dump()));
+        for (size_t c = 0; isAxis && c < 3; ++c) {
+            Json const& number = entry["axis"][c];
+            axis[c] = number.is_number() ? number.get<double>() : 0.0;
+        }
+        if (!(std::hypot(axis[0], axis[1], axis[2]) > 0.0)) {
+            Refuse(fmt::format("'rotate': {} has no axis of three numbers", entry.dump()));
+        }
         return axis;
     }
 

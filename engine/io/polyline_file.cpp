@@ -16,8 +16,8 @@ size_t ResolveIndex(TextScanner& scan, std::string_view word, size_t count) {
     bool const isNumber = code == std::errc() && (stop == word.data() + word.size() || *stop == '/');
     long long const index = value > 0 ? value - 1 : static_cast<long long>(count) + value;
     if (!isNumber || value == 0 || index < 0 || index >= static_cast<long long>(count)) {
-        scan.Refuse(fmt::format("a polyline's vertex index is {}; 1 to {} or -{} to -1 are possible here", TextScanner::Quote(word), count,
-                                count));
+        scan.Refuse(fmt::format("a polyline's vertex index is {}; 1 to {} or -{} to -1 are possible here",
+                                TextScanner::Quote(word), count, count));
     }
     return static_cast<size_t>(index);
 }
@@ -25,13 +25,16 @@ size_t ResolveIndex(TextScanner& scan, std::string_view word, size_t count) {
 eval::Curve ReadLine(TextScanner& scan, std::vector<eval::DoubleRow> const& points) {
     std::vector<size_t> indices;
     scan.DropComment();
-    for (std::string_view word = scan.Word(); !word.empty(); word = scan.Word()) indices.push_back(ResolveIndex(scan, word, points.size()));
+    for (std::string_view word = scan.Word(); !word.empty(); word = scan.Word()) {
+        indices.push_back(ResolveIndex(scan, word, points.size()));
+    }
     eval::Curve curve;
     curve.isClosed = indices.size() > 1 && indices.front() == indices.back();
     if (curve.isClosed) indices.pop_back();
     size_t const least = curve.isClosed ? 3 : 2;
     if (indices.size() < least) {
-        scan.Refuse(fmt::format("{} polyline has {} points; at least {} are needed", curve.isClosed ? "a closed" : "a", indices.size(), least));
+        scan.Refuse(fmt::format("{} polyline has {} points; at least {} are needed", curve.isClosed ? "a closed" : "a",
+                                indices.size(), least));
     }
     for (size_t index : indices) curve.points.push_back(points[index]);
     return curve;
@@ -53,12 +56,16 @@ std::vector<eval::Curve> ReadPolylines(std::string const& path) {
             curves.push_back(ReadLine(scan, points));
         }
     }
-    if (curves.empty()) throw Error(ErrorCode::BadMesh, fmt::format("{}: the file has no polylines; --curve needs 'l' lines", path));
+    if (curves.empty()) {
+        throw Error(ErrorCode::BadMesh, fmt::format("{}: the file has no polylines; --curve needs 'l' lines", path));
+    }
     return curves;
 }
 
 void WritePolylines(std::string const& path, std::vector<eval::Curve> const& curves, bool isDouble) {
-    if (GetEnding(path) != ".obj") throw Error(ErrorCode::BadOption, fmt::format("-o '{}': polylines are written as .obj", path));
+    if (GetEnding(path) != ".obj") {
+        throw Error(ErrorCode::BadOption, fmt::format("-o '{}': polylines are written as .obj", path));
+    }
     fmt::memory_buffer text;
     auto const to = std::back_inserter(text);
     size_t first = 1;
