@@ -25,16 +25,24 @@ std::vector<std::vector<double>> RestrictPositions(Far::TopologyRefiner const& r
     return levels;
 }
 
+/// Levels below the last only help to converge: a wide angle's negative weight would hinder there, and where a
+/// triangle has no area uniform weights serve.
+std::vector<double> FindCoarseWeights(Far::TopologyLevel const& level, std::span<double const> positions) {
+    try {
+        auto weights = far_ext::FindCotangentWeights(level, positions);
+        for (double& weight : weights) weight = std::max(weight, 1e-3);
+        return weights;
+    } catch (Error const&) {
+        return std::vector<double>(static_cast<size_t>(level.GetNumEdges()), 1.0);
+    }
+}
+
 /// Cotangent weights per edge of every level.
 std::vector<EdgeWeights> FindWeights(Far::TopologyRefiner const& refiner, std::span<double const> positions) {
     auto const places = RestrictPositions(refiner, positions);
     std::vector<EdgeWeights> weights;
-    for (int k = 0; k <= refiner.GetMaxLevel(); ++k) {
-        weights.push_back({far_ext::FindCotangentWeights(refiner.GetLevel(k), places[k]), {}});
-        // Levels below the last only help to converge: there a wide angle's negative weight would hinder.
-        if (k == refiner.GetMaxLevel()) continue;
-        for (double& weight : weights.back().edges) weight = std::max(weight, 1e-3);
-    }
+    for (int k = 0; k < refiner.GetMaxLevel(); ++k) weights.push_back({FindCoarseWeights(refiner.GetLevel(k), places[k]), {}});
+    weights.push_back({far_ext::FindCotangentWeights(refiner.GetLevel(refiner.GetMaxLevel()), positions), {}});
     return weights;
 }
 

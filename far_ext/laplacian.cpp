@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nanoflann.hpp>
@@ -236,6 +237,10 @@ AreaLaplacian BuildHeatLaplacian(Level const& level, std::span<double const> pos
                 laplacian.rows.indices.push_back(static_cast<Index>(index));
                 laplacian.rows.weights.push_back(index == static_cast<uint32_t>(vertex) ? sum : -weight);
             }
+        }
+        if (laplacian.rows.indices.size() > static_cast<size_t>(std::numeric_limits<int>::max())) {
+            throw Error(ErrorCode::TooLarge, fmt::format("the mesh Laplace operator of {} vertices passes 2^31 weights",
+                                                         level.GetNumVertices()));
         }
         laplacian.rows.offsets.push_back(static_cast<int>(laplacian.rows.indices.size()));
     }

@@ -67,7 +67,7 @@ struct HeatKernel {
 /// middle.
 ///
 /// \param kernel  receives t, the radius and the bound; may be null
-/// \throws Error  as BuildCotangentLaplacian
+/// \throws Error  as BuildCotangentLaplacian; TooLarge: more than 2^31 weights, some 200 per vertex
 /// Source  [Zhu11] Sec. 3.1, its reference [33]
 AreaLaplacian BuildHeatLaplacian(Far::TopologyLevel const& level, std::span<double const> positions,
                                  HeatKernel* kernel = nullptr);
