@@ -44,7 +44,7 @@ SubdivisionRule ChooseRule(RefineArguments const& a, CommonOptions const& common
     return *a.rule == "butterfly" ? SubdivisionRule::Butterfly : SubdivisionRule::Scheme;
 }
 
-engine::DifferentialOptions MakeOptions(RefineArguments const& a, SubdivisionRule rule) {
+engine::DifferentialOptions MakeOptions(RefineArguments const& a, SubdivisionRule rule, bool isDouble) {
     engine::DifferentialOptions options;
     options.rule = rule;
     if (a.laplacian == "cotangent") options.laplacian = engine::Laplacian::Cotangent;
@@ -53,6 +53,7 @@ engine::DifferentialOptions MakeOptions(RefineArguments const& a, SubdivisionRul
     options.spatialLevels = a.spatialLevels;
     options.handles.assign(a.handles.begin(), a.handles.end());
     options.usesCholesky = a.solver == "cholesky";
+    options.tolerance = isDouble ? 1e-12 : 1e-8;  // what is written should be right to its last digits
     if (!a.editPath.empty()) options.edit = engine::ReadCurvatureEdit(a.editPath);
     return options;
 }
@@ -60,7 +61,7 @@ engine::DifferentialOptions MakeOptions(RefineArguments const& a, SubdivisionRul
 /// \return false where the solver missed its tolerance
 bool RefineDifferentially(RefineArguments const& a, Context& context, SubdivisionRule rule, engine::Scene const& scene,
                           engine::Scene& fine) {
-    auto const options = MakeOptions(a, rule);
+    auto const options = MakeOptions(a, rule, context.GetCommon().IsDouble());
     engine::DifferentialReport found;
     fine = engine::RefineDifferentially(scene, a.levels, options, context.GetCommon().IsLeftHanded() ? -1.0 : 1.0, found);
     for (std::string const& warning : found.warnings) context.GetJob().Warn(warning);

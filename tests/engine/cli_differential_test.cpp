@@ -42,13 +42,13 @@ TEST_F(DifferentialCli, TheReferencesAreMet) {
         auto const outcome = Refine(Mesh(mesh), {"--space", "differential", "--rule", rule, "--precision", "double"});
         ASSERT_EQ(outcome.status, 0) << outcome.err;
         auto const result = engine::ReadMesh(folder / "out.obj");
-        EXPECT_LT(test::LargestDifference(result.positions, test::LoadPoints(reference), true), 1e-7) << reference;
+        EXPECT_LT(test::LargestDifference(result.positions, test::LoadPoints(reference), true), 1e-9) << reference;
         json const report = Report();
         for (char const* key : {"unknowns", "solve_seconds", "residual", "compatibility_defect", "thin_plate_energy", "thin_plate_energy_area",
                                 "size_ratio"}) {
             EXPECT_TRUE(report.contains(key)) << key;
         }
-        EXPECT_LT(report["residual"], 1e-8);
+        EXPECT_LT(report["residual"], 1e-10);
     }
 }
 
