@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "engine/job.h"
-#include "eval/refine_values.h"
+#include "eval/subdivide_values.h"
 #include "eval/vertex_limits.h"
 #include "far_ext/error.h"
 #include "far_ext/refined_cage.h"
@@ -64,7 +64,7 @@ void MoveToLimit(Scene& fine) {
 
 }  // namespace
 
-Scene RefineUniformly(Scene const& scene, int levels, bool toLimit) {
+std::unique_ptr<Far::TopologyRefiner> MakeUniformRefiner(Scene const& scene, int levels) {
     if (levels < 0 || levels > 10) {
         throw Error(ErrorCode::BadOption, fmt::format("--levels: {} is not from 0 to 10", levels));
     }
@@ -74,25 +74,38 @@ Scene RefineUniformly(Scene const& scene, int levels, bool toLimit) {
                                                      "indexed",
                                                      scene.path, levels, corners));
     }
-    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    auto refiner = far_ext::CreateRefiner(scene.cage);
     Far::TopologyRefiner::UniformOptions uniform(levels);
     uniform.fullTopologyInLastLevel = true;
     refiner->RefineUniform(uniform);
+    return refiner;
+}
 
+Scene RefineAllButPositions(Scene const& scene, Far::TopologyRefiner const& refiner) {
     Scene fine;
     fine.path = scene.path;
     fine.name = scene.name;
-    fine.cage = far_ext::MakeRefinedCage(*refiner, scene.cage);
-    fine.positions = RefineToLast<3>(*refiner, scene.positions);
-    if (scene.HasUVs()) fine.uvs = RefineToLast<2>(*refiner, scene.uvs, 0);
-    for (Primvar const& primvar : scene.primvars) fine.primvars.push_back(RefinePrimvar(*refiner, primvar));
-    std::vector<Index> const base = FindBaseFaces(*refiner);
+    fine.cage = far_ext::MakeRefinedCage(refiner, scene.cage);
+    if (scene.HasUVs()) fine.uvs = RefineToLast<2>(refiner, scene.uvs, 0);
+    for (Primvar const& primvar : scene.primvars) fine.primvars.push_back(RefinePrimvar(refiner, primvar));
+    std::vector<Index> const base = FindBaseFaces(refiner);
     for (size_t kind = 0; kind < 3; ++kind) {
         fine.groups[kind].names = scene.groups[kind].names;
         if (scene.groups[kind].faceGroup.empty()) continue;
         for (Index face : base) fine.groups[kind].faceGroup.push_back(scene.groups[kind].faceGroup[face]);
     }
-    if (toLimit) MoveToLimit(fine);
+    return fine;
+}
+
+Scene RefineUniformly(Scene const& scene, int levels, bool toLimit, far_ext::SubdivisionRule rule) {
+    auto const refiner = MakeUniformRefiner(scene, levels);
+    Scene fine = RefineAllButPositions(scene, *refiner);
+    fine.positions = scene.positions;
+    for (int level = 1; level <= levels; ++level) {
+        CheckInterrupted();
+        fine.positions = eval::SubdivideValues<3>(*refiner, level, rule, fine.positions);
+    }
+    if (toLimit && rule == far_ext::SubdivisionRule::Scheme) MoveToLimit(fine);
     return fine;
 }
 

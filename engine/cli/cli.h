@@ -81,6 +81,7 @@ Verb AddBake(CLI::App& app);
 Verb AddBands(CLI::App& app);
 Verb AddDenoise(CLI::App& app);
 Verb AddFit(CLI::App& app);
+Verb AddMeasure(CLI::App& app);
 Verb AddMorph(CLI::App& app);
 Verb AddRefine(CLI::App& app);
 Verb AddSharpen(CLI::App& app);

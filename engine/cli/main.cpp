@@ -85,9 +85,9 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     app.get_formatter()->column_width(34);
     CommonOptions common;
-    std::vector<limn::cli::Verb> const verbs{limn::cli::AddInfo(app), limn::cli::AddEval(app), limn::cli::AddBake(app),
-                                             limn::cli::AddRefine(app), limn::cli::AddFit(app), limn::cli::AddBands(app),
-                                             limn::cli::AddDenoise(app), limn::cli::AddSharpen(app), limn::cli::AddMorph(app)};
+    using namespace limn::cli;
+    std::vector<Verb> const verbs{AddInfo(app),  AddEval(app),    AddBake(app),    AddRefine(app), AddMeasure(app),
+                                  AddFit(app),   AddBands(app),   AddDenoise(app), AddSharpen(app), AddMorph(app)};
     for (auto const& verb : verbs) AddCommonOptions(*verb.app, common);
     try {
         app.parse(argc, argv);

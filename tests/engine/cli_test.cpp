@@ -47,7 +47,7 @@ TEST_F(Cli, VersionGoesToStdout) {
 }
 
 TEST_F(Cli, HelpOfEveryVerbShowsAnExample) {
-    for (std::string const verb : {"info", "eval", "bake", "refine", "fit", "bands", "denoise", "sharpen", "morph"}) {
+    for (std::string const verb : {"info", "eval", "bake", "refine", "measure", "fit", "bands", "denoise", "sharpen", "morph"}) {
         Outcome const outcome = Limn({verb, "--help"});
         EXPECT_EQ(outcome.status, 0) << verb;
         size_t const example = outcome.out.find("Example:");

@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include "engine/cli/cli.h"
+#include "engine/io/mesh_writer.h"
+#include "engine/measure.h"
+#include "engine/mesh_picture.h"
+#include "far_ext/error.h"
+
+namespace limn::cli {
+
+namespace {
+
+struct MeasureArguments {
+    std::string mesh, prefix, surface = "limit";
+    std::vector<double> view{1.0, 0.6, 0.8};
+    bool hasHighlight = false, hasPicture = false;
+};
+
+nlohmann::json ToJson(engine::CurvatureStatistics const& statistics) {
+    return {{"min", statistics.min}, {"max", statistics.max}, {"mean", statistics.mean}, {"stddev", statistics.stddev}};
+}
+
+nlohmann::json ToJson(engine::Measurement const& found) {
+    nlohmann::json json{{"area", found.area},
+                        {"volume", nullptr},
+                        {"euler_characteristic", found.eulerCharacteristic},
+                        {"thin_plate_energy", found.energy.mean},
+                        {"thin_plate_energy_area", found.energy.integral},
+                        {"mean_curvature", ToJson(found.mean)},
+                        {"gaussian_curvature", ToJson(found.gaussian)},
+                        {"samples", found.numSamples},
+                        {"gauss_bonnet", nlohmann::json::array()}};
+    if (found.volume) json["volume"] = *found.volume;
+    for (auto const& audit : found.gaussBonnet) {
+        json["gauss_bonnet"].push_back({{"component", audit.component},
+                                        {"integral", audit.integral},
+                                        {"expected", audit.expected},
+                                        {"relative_error", audit.relativeError},
+                                        {"audited", audit.wasAudited},
+                                        {"reason", audit.reason}});
+    }
+    return json;
+}
+
+int RunMeasure(MeasureArguments const& a, Context& context) {
+    context.KeepStdoutForData(true);
+    if (a.prefix.empty() && (a.hasHighlight || a.hasPicture)) {
+        throw Error(ErrorCode::BadOption, "--highlight and --picture write files; name their beginning with -o");
+    }
+    auto const [scene, refiner] = context.Load(a.mesh);
+    auto const surface = a.surface == "mesh" ? engine::MeasuredSurface::Mesh : engine::MeasuredSurface::Limit;
+    double const orientation = context.GetCommon().IsLeftHanded() ? -1.0 : 1.0;
+    auto const json = ToJson(engine::Measure(scene, *refiner, surface, orientation));
+    if (!a.prefix.empty()) {
+        auto const curved = engine::AddVertexCurvature(scene, *refiner, surface, orientation);
+        std::vector<std::string> warnings;
+        engine::WriteMesh(a.prefix + ".ply", curved, context.GetCommon().IsDouble(), &warnings);
+        for (std::string const& warning : warnings) context.GetJob().Warn(warning);
+        engine::PictureView const view{{a.view[0], a.view[1], a.view[2]}};
+        if (a.hasPicture) engine::WriteValuePicture(a.prefix + ".mean.png", curved, "mean", view);
+        if (a.hasHighlight) engine::WriteHighlightPicture(a.prefix + ".highlight.png", scene, view);
+    }
+    PrintData(json.dump(2) + "\n");
+    context.GetReport().update(json);
+    return kDone;
+}
+
+}  // namespace
+
+Verb AddMeasure(CLI::App& app) {
+    auto const a = std::make_shared<MeasureArguments>();
+    CLI::App* const verb = app.add_subcommand("measure", "Area, volume, energies and curvature of a surface");
+    verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();
+    verb->add_option("-o,--output", a->prefix, "write PREFIX.ply with mean, gaussian, k1 and k2 per vertex");
+    verb->add_option("--surface", a->surface, "limit (default): exact curvature of the limit; mesh: of the mesh itself")
+        ->check(CLI::IsMember({"limit", "mesh"}));
+    verb->add_flag("--highlight", a->hasHighlight, "also write PREFIX.highlight.png: highlight lines of the mesh");
+    verb->add_flag("--picture", a->hasPicture, "also write PREFIX.mean.png: the mesh in colours of mean curvature");
+    verb->add_option("--view", a->view, "pictures: the side that is seen, x,y,z (default 1,0.6,0.8)")
+        ->delimiter(',')
+        ->expected(3);
+    verb->footer("Example:\n  limn measure scenes/spot/spot.obj -o out/spot --highlight");
+    return {verb, [a](Context& context) { return RunMeasure(*a, context); }};
+}
+
+}  // namespace limn::cli

@@ -1,0 +1,155 @@
+#include "engine/mesh_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include <Eigen/Dense>
+#include <fmt/format.h>
+
+#include "engine/bake/preview.h"
+#include "eval/dirmag.h"
+#include "far_ext/error.h"
+#include "far_ext/refiner.h"
+
+namespace limn::engine {
+
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+/// An orthographic picture of a mesh: which value is seen in each pixel.
+class MeshPicture {
+public:
+    MeshPicture(Scene const& scene, PictureView const& view)
+        : _scene(scene),
+          _size(view.size),
+          _depth(NumPixels(), -std::numeric_limits<double>::infinity()),
+          _values(NumPixels(), 0.0f),
+          _coverage(NumPixels(), 0.0f) {
+        Vector const from(view.from[0], view.from[1], view.from[2]);
+        if (!(from.norm() > 0.0)) throw Error(ErrorCode::BadOption, "--view 0,0,0 is no direction");
+        _toEye = from.normalized();
+        Vector const up = std::abs(_toEye.y()) < 0.9 ? Vector::UnitY() : Vector::UnitZ();
+        _right = up.cross(_toEye).normalized();
+        _up = _toEye.cross(_right);
+        FitToPicture();
+    }
+
+    /// Draws every face; shade(weights of three corners, their vertices) gives a pixel's value.
+    using Shade = std::function<double(Vector const& weights, std::array<Index, 3> const& corners)>;
+    void Draw(Shade const& shade) {
+        size_t corner = 0;
+        for (int size : _scene.cage.faceSizes) {
+            auto const at = [&](int i) { return _scene.cage.faceVertices[corner + static_cast<size_t>(i)]; };
+            for (int i = 1; i + 1 < size; ++i) DrawTriangle({at(0), at(i), at(i + 1)}, shade);
+            corner += static_cast<size_t>(size);
+        }
+    }
+
+    void Write(std::string const& path, bool isSigned) const {
+        Map map{MapKind::Primvar, "picture", {"V"}, Averaging::Plain, isSigned, "", eval::Quantity{}, 0};
+        PreviewBuilder preview(map, 0, _size, _size);
+        std::vector<uint8_t> const isFilled(static_cast<size_t>(_size), 1);
+        for (int row = 0; row < _size; ++row) {
+            size_t const first = static_cast<size_t>(row) * static_cast<size_t>(_size);
+            preview.Add(row, {&_values[first], NumPixels(), &_coverage[first], isFilled.data()});
+        }
+        WritePng(path, preview.Draw());
+    }
+
+    Vector const& GetDirectionToEye() const { return _toEye; }
+    double GetScale() const { return _scale; }  ///< pixels per unit of length
+    Vector GetUp() const { return _up; }
+
+private:
+    size_t NumPixels() const { return static_cast<size_t>(_size) * static_cast<size_t>(_size); }
+    Vector PointOf(Index vertex) const { return Vector(&_scene.positions[3 * static_cast<size_t>(vertex)]); }
+
+    void FitToPicture() {
+        Eigen::AlignedBox2d box;
+        for (Index vertex : _scene.cage.faceVertices) {
+            box.extend(Eigen::Vector2d(PointOf(vertex).dot(_right), PointOf(vertex).dot(_up)));
+        }
+        double const extent = box.sizes().maxCoeff();
+        _scale = extent > 0.0 ? 0.94 * _size / extent : 1.0;
+        _centre = box.center();
+    }
+
+    /// Pixel coordinates, and height towards the eye.
+    Vector Project(Index vertex) const {
+        Vector const p = PointOf(vertex);
+        double const x = p.dot(_right) - _centre.x(), y = p.dot(_up) - _centre.y();
+        return {0.5 * _size + _scale * x, 0.5 * _size - _scale * y, p.dot(_toEye)};
+    }
+
+    void DrawTriangle(std::array<Index, 3> const& corners, Shade const& shade) {
+        Vector const a = Project(corners[0]), b = Project(corners[1]), c = Project(corners[2]);
+        double const area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+        if (!(std::abs(area) > 0.0)) return;
+        auto const first = [&](double low) { return std::max(0, static_cast<int>(std::ceil(low - 0.5))); };
+        auto const last = [&](double high) { return std::min(_size - 1, static_cast<int>(std::floor(high - 0.5))); };
+        for (int y = first(std::min({a.y(), b.y(), c.y()})); y <= last(std::max({a.y(), b.y(), c.y()})); ++y) {
+            for (int x = first(std::min({a.x(), b.x(), c.x()})); x <= last(std::max({a.x(), b.x(), c.x()})); ++x) {
+                double const px = x + 0.5, py = y + 0.5;
+                double const wb = ((px - a.x()) * (c.y() - a.y()) - (py - a.y()) * (c.x() - a.x())) / area;
+                double const wc = ((b.x() - a.x()) * (py - a.y()) - (b.y() - a.y()) * (px - a.x())) / area;
+                Vector const weights(1.0 - wb - wc, wb, wc);
+                if (weights.minCoeff() < -1e-9) continue;
+                double const depth = weights.dot(Vector(a.z(), b.z(), c.z()));
+                size_t const pixel = static_cast<size_t>(y) * static_cast<size_t>(_size) + static_cast<size_t>(x);
+                if (!(depth > _depth[pixel])) continue;
+                _depth[pixel] = depth;
+                _coverage[pixel] = 1.0f;
+                _values[pixel] = static_cast<float>(shade(weights, corners));
+            }
+        }
+    }
+
+    Scene const& _scene;
+    int _size;
+    std::vector<double> _depth;
+    std::vector<float> _values, _coverage;
+    Vector _toEye, _right, _up;
+    Eigen::Vector2d _centre;
+    double _scale = 1.0;
+};
+
+}  // namespace
+
+void WriteValuePicture(std::string const& path, Scene const& scene, std::string const& primvar, PictureView const& view) {
+    auto const found = std::find_if(scene.primvars.begin(), scene.primvars.end(),
+                                    [&](Primvar const& p) { return p.name == primvar && p.numChannels == 1; });
+    if (found == scene.primvars.end()) throw Error(ErrorCode::BadOption, fmt::format("the mesh has no scalar '{}'", primvar));
+    MeshPicture picture(scene, view);
+    picture.Draw([&](Vector const& weights, std::array<Index, 3> const& corners) {
+        double value = 0.0;
+        for (int k = 0; k < 3; ++k) value += weights[k] * static_cast<double>(found->values[corners[static_cast<size_t>(k)]]);
+        return value;
+    });
+    picture.Write(path, true);
+}
+
+void WriteHighlightPicture(std::string const& path, Scene const& scene, PictureView const& view) {
+    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    auto const normals = eval::FindAngleNormals(refiner->GetLevel(0), scene.positions);
+    MeshPicture picture(scene, view);
+    constexpr double kStripes = 24.0;  // from one horizon to the other
+    picture.Draw([&](Vector const& weights, std::array<Index, 3> const& corners) {
+        Vector normal = Vector::Zero();
+        for (int k = 0; k < 3; ++k) {
+            auto const corner = static_cast<size_t>(corners[static_cast<size_t>(k)]);
+            normal += weights[k] * Vector(&normals[3 * corner]);
+        }
+        // Strip lights far away, side by side: the reflected ray's height tells which one is met.
+        normal.normalize();
+        Vector const ray = 2.0 * normal.dot(picture.GetDirectionToEye()) * normal - picture.GetDirectionToEye();
+        double const height = std::asin(std::clamp(ray.dot(picture.GetUp()), -1.0, 1.0)) / std::acos(-1.0);
+        double const wave = std::cos(2.0 * std::acos(-1.0) * kStripes * height);
+        return std::clamp(0.5 + 2.0 * wave, 0.0, 1.0);
+    });
+    picture.Write(path, false);
+}
+
+}  // namespace limn::engine
