@@ -1,7 +1,5 @@
 #include "engine/bands.h"
 
-#include <algorithm>
-
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -57,7 +55,8 @@ namespace {
 
 void RequireSameFaces(Scene const& from, Scene const& to) {
     auto const refuse = [&](std::string const& what) {
-        throw Error(ErrorCode::BadMesh, fmt::format("{} and {} do not have the same faces: {}; a morph needs the same vertices and faces in the same order",
+        throw Error(ErrorCode::BadMesh, fmt::format("{} and {} do not have the same faces: {}; a morph needs the same vertices and "
+                                                    "faces in the same order",
                                                     from.path, to.path, what));
     };
     auto const &a = from.cage, &b = to.cage;
@@ -66,8 +65,9 @@ void RequireSameFaces(Scene const& from, Scene const& to) {
     size_t corner = 0;
     for (Index face = 0; face < a.GetNumFaces(); ++face) {
         size_t const size = static_cast<size_t>(a.faceSizes[face]);
-        auto const first = a.faceVertices.begin() + static_cast<std::ptrdiff_t>(corner);
-        if (a.faceSizes[face] != b.faceSizes[face] || !std::equal(first, first + static_cast<std::ptrdiff_t>(size), b.faceVertices.begin() + static_cast<std::ptrdiff_t>(corner))) {
+        bool isSame = a.faceSizes[face] == b.faceSizes[face];
+        for (size_t i = corner; isSame && i < corner + size; ++i) isSame = a.faceVertices[i] == b.faceVertices[i];
+        if (!isSame) {
             refuse(fmt::format("{} has other vertices than {}", from.NameFace(face), to.NameFace(face)));
         }
         corner += size;

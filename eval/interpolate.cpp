@@ -109,7 +109,8 @@ SolveReport Interpolator::Solve(std::span<double const> M, int length, std::span
         std::vector<double> data(numVertices * block), solution;
         for (size_t i = 0; i < numVertices; ++i) std::copy_n(&M[i * stride + start], block, &data[i * block]);
         solution = data;
-        LimitProblem problem{_A, static_cast<int>(block), data.data(), solution.data(), size, options.tolerance, options.maxIterations, options.onIteration};
+        LimitProblem problem{_A,   static_cast<int>(block), data.data(),           solution.data(),
+                             size, options.tolerance,       options.maxIterations, options.onIteration};
         Join(report, SolveBlock(problem, options));
         for (size_t i = 0; i < numVertices; ++i) std::copy_n(&solution[i * block], block, &P[i * stride + start]);
     }

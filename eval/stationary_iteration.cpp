@@ -2,7 +2,7 @@
 #include <cmath>
 #include <utility>
 
-#include "eval/limit_problem.h"
+#include "eval/step_schedule.h"
 
 namespace limn::eval {
 
@@ -23,58 +23,12 @@ Real FindLargest(std::vector<Real> const& values) {
     return largest;
 }
 
-/// Coefficients a and b of the steps.
-class Schedule {
-public:
-    Schedule(StationaryMethod method, double lambda) : _method(method) { Restart(lambda); }
-
-    void Restart(double lambda) {
-        _lambda = lambda;
-        _theta = (1.0 + lambda) / 2.0;
-        _sigma = _theta / ((1.0 - lambda) / 2.0);
-        _rho = 0.0;
-    }
-
-    void Advance(double& a, double& b) {
-        a = 0.0;
-        b = 1.0;
-        if (_method == StationaryMethod::Weighted) b = 1.0 / _theta;
-        if (_method != StationaryMethod::Chebyshev) return;
-        if (_rho == 0.0) {  // the first step
-            _rho = 1.0 / _sigma;
-            b = 1.0 / _theta;
-            return;
-        }
-        double const rho = 1.0 / (2.0 * _sigma - _rho);
-        a = rho * _rho;
-        b = 2.0 * rho * _sigma / _theta;
-        _rho = rho;
-    }
-
-    double GetLambda() const { return _lambda; }
-
-    /// Chebyshev's factor per step, if the bound holds.
-    double GetExpectedRate() const { return 1.0 / GetGrowth(_sigma); }
-
-    /// The eigenvalue whose mode shrinks by `rate` per step; the bound was too high if that is slow.
-    double FindEigenvalue(double rate) const {
-        double const growth = rate * GetGrowth(_sigma);
-        double const place = 0.5 * (growth + 1.0 / growth);
-        return _theta - place * (1.0 - _lambda) / 2.0;
-    }
-
-private:
-    static double GetGrowth(double x) { return x + std::sqrt(x * x - 1.0); }
-
-    StationaryMethod _method;
-    double _lambda = 0.0, _theta = 0.0, _sigma = 0.0, _rho = 0.0;
-};
-
 /// The inner iteration, in float: a correction E with A E = R, started at 0, in the unit of the data's size.
 template <int Lanes>
 class Correction {
 public:
-    explicit Correction(LimitOperator const& A) : _A(A), _right(static_cast<size_t>(A.GetNumVertices()) * Row::kStride, 0.0f), _current(_right), _previous(_right) {}
+    explicit Correction(LimitOperator const& A)
+        : _A(A), _right(static_cast<size_t>(A.GetNumVertices()) * Row::kStride, 0.0f), _current(_right), _previous(_right) {}
 
     /// One step in place, with max |R - A E| from before it.
     float Step(double a, double b) {
@@ -115,25 +69,6 @@ private:
 
     LimitOperator const& _A;
     std::vector<float> _right, _current, _previous;  // of vertices that are not of the rest: 0
-};
-
-/// Watches Chebyshev's convergence: the mean factor per step over the last steps since the bound was set.
-class RateWatch {
-public:
-    static constexpr int kWindow = 6;
-
-    void Restart() { _residuals.clear(); }
-    void Add(double residual) { _residuals.push_back(residual); }
-    bool IsReady() const { return _residuals.size() > kWindow + 3; }
-    double GetRate() const {
-        // A single mode swings through zero: the larger of two neighbours tells its size.
-        auto const at = [&](size_t k) { return std::max(_residuals[k], _residuals[k - 1]); };
-        size_t const last = _residuals.size() - 1;
-        return std::pow(at(last) / at(last - kWindow), 1.0 / kWindow);
-    }
-
-private:
-    std::vector<double> _residuals;
 };
 
 /// The outer iteration, in double: R = M - A P, P += E until R is small enough.
@@ -231,7 +166,7 @@ private:
 
     LimitProblem const& _problem;
     StationaryMethod _method;
-    Schedule _schedule;
+    StepSchedule _schedule;
     double _smallest;
     Correction<kLanes> _correction;
     RateWatch _watch;

@@ -30,7 +30,10 @@ eval::SolveMethod ParseMethod(std::string const& name) {
 nlohmann::json ToJson(std::vector<eval::SingularReport> const& components) {
     nlohmann::json list = nlohmann::json::array();
     for (auto const& component : components) {
-        list.push_back({{"first_vertex", component.firstVertex}, {"vertices", component.numVertices}, {"defect", component.defect}, {"solved", component.isSolved}});
+        list.push_back({{"first_vertex", component.firstVertex},
+                        {"vertices", component.numVertices},
+                        {"defect", component.defect},
+                        {"solved", component.isSolved}});
     }
     return list;
 }
@@ -48,7 +51,10 @@ void AddToReport(nlohmann::json& report, engine::FitResult const& result, engine
     report["solve_seconds"] = result.solveSeconds;
     for (size_t i = 0; i < result.primvars.size(); ++i) {
         auto const& primvar = result.primvars[i];
-        report["primvars"].push_back({{"name", scene.primvars[i].name}, {"iterations", primvar.iterations}, {"residual", primvar.residual}, {"converged", primvar.converged}});
+        report["primvars"].push_back({{"name", scene.primvars[i].name},
+                                      {"iterations", primvar.iterations},
+                                      {"residual", primvar.residual},
+                                      {"converged", primvar.converged}});
     }
 }
 
@@ -92,7 +98,9 @@ int Run(Arguments const& a, Context& context) {
     engine::FitOptions options = a.options;
     options.method = ParseMethod(a.method);
     engine::RequireMeshEnding(a.output);
-    if (options.keepsTopology && options.alpha == 0.0) throw Error(ErrorCode::BadOption, "--keep-topology: without --alpha the topology is kept anyway");
+    if (options.keepsTopology && options.alpha == 0.0) {
+        throw Error(ErrorCode::BadOption, "--keep-topology: without --alpha the topology is kept anyway");
+    }
     auto mesh = context.Load(a.mesh);
     if (a.level > 0) mesh.scene = engine::RefineUniformly(mesh.scene, a.level, false);
     engine::FitResult const result = engine::FitToLimit(mesh.scene, options);
@@ -107,7 +115,8 @@ int Run(Arguments const& a, Context& context) {
     }
     bool const isDouble = context.GetCommon().IsDouble();
     if (!isDouble && options.tolerance < 1e-7) {
-        context.GetJob().Warn(fmt::format("{}: floats keep 6e-8 of a coordinate; use --precision double for a tolerance of {:.2g}", a.output, options.tolerance));
+        context.GetJob().Warn(fmt::format("{}: floats keep 6e-8 of a coordinate; use --precision double for a tolerance of {:.2g}",
+                                          a.output, options.tolerance));
     }
     std::vector<std::string> warnings;
     engine::WriteMesh(a.output, result.mesh, isDouble, &warnings);
@@ -125,7 +134,8 @@ Verb AddFit(CLI::App& app) {
     verb->add_option("--tolerance", a->options.tolerance, "of the largest miss, over the diagonal of the bounding box (default 1e-6)")
         ->check(CLI::Range(1e-15, 1.0));
     verb->add_option("--method", a->method, "progressive, weighted, chebyshev, cg, direct, or auto (default): the fastest that converges");
-    verb->add_option("--max-iterations", a->options.maxIterations, "applications of the limit matrix (default 1000)")->check(CLI::Range(1, 100000000));
+    verb->add_option("--max-iterations", a->options.maxIterations, "applications of the limit matrix (default 1000)")
+        ->check(CLI::Range(1, 100000000));
     verb->add_option("--alpha", a->options.alpha, "generalised Catmull-Clark in the first step, 0 (default) to 1; the result is one level finer")
         ->check(CLI::Range(0.0, 1.0));
     verb->add_flag("--keep-topology", a->options.keepsTopology, "with --alpha: write the control mesh before that step");
