@@ -6,10 +6,10 @@ namespace limn::eval {
 
 namespace {
 
-double LengthOf(DoubleRow const& row) { return std::sqrt(row.square().sum()); }
+double LengthOf(DoubleLanes const& row) { return std::sqrt(row.square().sum()); }
 
 /// A point by its place in the order; beyond an end, the reflection of what lies inside.
-DoubleRow GetPoint(Curve const& curve, int i) {
+DoubleLanes GetPoint(Curve const& curve, int i) {
     int const size = static_cast<int>(curve.points.size());
     if (curve.isClosed) return curve.points[static_cast<size_t>((i + size) % size)];
     if (i < 0) return 2.0 * curve.points.front() - curve.points[static_cast<size_t>(-i)];
@@ -25,9 +25,9 @@ Curve SubdivideCurve(Curve const& coarse, CurveRule rule) {
     Curve fine{{}, coarse.isClosed};
     int const size = static_cast<int>(coarse.points.size());
     for (int i = 0; i < size; ++i) {
-        DoubleRow const before = GetPoint(coarse, i - 1), at = GetPoint(coarse, i), after = GetPoint(coarse, i + 1);
+        DoubleLanes const before = GetPoint(coarse, i - 1), at = GetPoint(coarse, i), after = GetPoint(coarse, i + 1);
         bool const stays = rule == CurveRule::FourPoint || IsEnd(coarse, i);
-        fine.points.push_back(stays ? at : DoubleRow(0.125 * before + 0.75 * at + 0.125 * after));
+        fine.points.push_back(stays ? at : DoubleLanes(0.125 * before + 0.75 * at + 0.125 * after));
         if (i + 1 == size && !coarse.isClosed) break;
         if (rule == CurveRule::FourPoint) {
             fine.points.push_back((9.0 * (at + after) - before - GetPoint(coarse, i + 2)) / 16.0);
@@ -38,8 +38,8 @@ Curve SubdivideCurve(Curve const& coarse, CurveRule rule) {
     return fine;
 }
 
-std::vector<DoubleRow> FindCurveDeltas(Curve const& curve) {
-    std::vector<DoubleRow> deltas;
+std::vector<DoubleLanes> FindCurveDeltas(Curve const& curve) {
+    std::vector<DoubleLanes> deltas;
     int const size = static_cast<int>(curve.points.size());
     for (int i = 0; i < size; ++i) {
         deltas.push_back(GetPoint(curve, i) - 0.5 * (GetPoint(curve, i - 1) + GetPoint(curve, i + 1)));
@@ -51,22 +51,22 @@ std::vector<DoubleRow> FindCurveDeltas(Curve const& curve) {
     return deltas;
 }
 
-double SolveClosedCurve(std::vector<DoubleRow> const& deltas, std::vector<DoubleRow>& points) {
+double SolveClosedCurve(std::vector<DoubleLanes> const& deltas, std::vector<DoubleLanes>& points) {
     auto const size = static_cast<double>(deltas.size());
-    DoubleRow sum = DoubleRow::Zero();
+    DoubleLanes sum = DoubleLanes::Zero();
     double lengths = 0.0;
-    for (DoubleRow const& delta : deltas) {
+    for (DoubleLanes const& delta : deltas) {
         sum += delta;
         lengths += LengthOf(delta);
     }
-    DoubleRow const mean = sum / size;
-    DoubleRow edge = DoubleRow::Zero(), drift = DoubleRow::Zero();
-    for (DoubleRow const& delta : deltas) {  // an edge differs from the one before by twice delta
+    DoubleLanes const mean = sum / size;
+    DoubleLanes edge = DoubleLanes::Zero(), drift = DoubleLanes::Zero();
+    for (DoubleLanes const& delta : deltas) {  // an edge differs from the one before by twice delta
         edge -= 2.0 * (delta - mean);
         drift += edge;
     }
     edge = -drift / size;  // so that edges add up to 0
-    points.assign(deltas.size(), DoubleRow::Zero());
+    points.assign(deltas.size(), DoubleLanes::Zero());
     for (size_t i = 0; i + 1 < deltas.size(); ++i) {
         edge -= 2.0 * (deltas[i] - mean);
         points[i + 1] = points[i] + edge;
@@ -74,10 +74,10 @@ double SolveClosedCurve(std::vector<DoubleRow> const& deltas, std::vector<Double
     return lengths > 0.0 ? LengthOf(sum) / lengths : 0.0;
 }
 
-void SolveOpenCurve(std::vector<DoubleRow> const& deltas, DoubleRow const& first, DoubleRow const& last,
-                    std::vector<DoubleRow>& points) {
+void SolveOpenCurve(std::vector<DoubleLanes> const& deltas, DoubleLanes const& first, DoubleLanes const& last,
+                    std::vector<DoubleLanes>& points) {
     size_t const numEdges = deltas.size() - 1;
-    DoubleRow edge = DoubleRow::Zero(), drift = DoubleRow::Zero();
+    DoubleLanes edge = DoubleLanes::Zero(), drift = DoubleLanes::Zero();
     for (size_t i = 1; i < numEdges; ++i) {
         edge -= 2.0 * deltas[i];
         drift += edge;
@@ -96,15 +96,15 @@ Curve RefineCurveDifferentially(Curve const& coarse, CurveRule rule, int levels,
     for (int level = 0; level < levels; ++level) {
         spatial = SubdivideCurve(spatial, rule);
         deltas = SubdivideCurve(deltas, rule);
-        for (DoubleRow& delta : deltas.points) delta *= 0.25;
+        for (DoubleLanes& delta : deltas.points) delta *= 0.25;
     }
     Curve fine{{}, coarse.isClosed};
     CurveReport found;
-    DoubleRow mean = DoubleRow::Zero();
+    DoubleLanes mean = DoubleLanes::Zero();
     if (coarse.isClosed) {
         found.compatibilityDefect = SolveClosedCurve(deltas.points, fine.points);
-        for (DoubleRow& point : fine.points) point += spatial.points.front();
-        for (DoubleRow const& delta : deltas.points) mean += delta / static_cast<double>(deltas.points.size());
+        for (DoubleLanes& point : fine.points) point += spatial.points.front();
+        for (DoubleLanes const& delta : deltas.points) mean += delta / static_cast<double>(deltas.points.size());
     } else {
         SolveOpenCurve(deltas.points, spatial.points.front(), spatial.points.back(), fine.points);
     }

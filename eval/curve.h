@@ -8,7 +8,7 @@ namespace limn::eval {
 
 /// A polyline: points in order; a closed one joins its last to its first.
 struct Curve {
-    std::vector<DoubleRow> points;  ///< the fourth lane is 0
+    std::vector<DoubleLanes> points;  ///< the fourth lane is 0
     bool isClosed = false;
 };
 
@@ -25,15 +25,15 @@ Curve SubdivideCurve(Curve const& coarse, CurveRule rule);
 /// delta_i = v_i - (v_(i-1) + v_(i+1)) / 2. An open curve's ends take their neighbour's (of 2 points: 0).
 ///
 /// Source  [Zhu11] eq. (8)
-std::vector<DoubleRow> FindCurveDeltas(Curve const& curve);
+std::vector<DoubleLanes> FindCurveDeltas(Curve const& curve);
 
 /// The closed curve with given deltas whose first point is 0, by summing twice; their mean, which none has, is
 /// taken away. \return |sum delta| / sum |delta|
-double SolveClosedCurve(std::vector<DoubleRow> const& deltas, std::vector<DoubleRow>& points);
+double SolveClosedCurve(std::vector<DoubleLanes> const& deltas, std::vector<DoubleLanes>& points);
 
 /// The open curve with given deltas (those of the ends are not used) between given ends.
-void SolveOpenCurve(std::vector<DoubleRow> const& deltas, DoubleRow const& first, DoubleRow const& last,
-                    std::vector<DoubleRow>& points);
+void SolveOpenCurve(std::vector<DoubleLanes> const& deltas, DoubleLanes const& first, DoubleLanes const& last,
+                    std::vector<DoubleLanes>& points);
 
 /// What became of a curve in differential space.
 struct CurveReport {

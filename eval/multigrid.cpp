@@ -68,59 +68,59 @@ struct Multigrid::Implementation {
         : levels(BuildMultigridLevels(refiner, fixed, coarsest)), cycle(levels) {
         cycle.SetWeights(std::vector<RowWeights<float>>(levels.size()), BoundEigenvalues(refiner, coarsest), true);
         auto const numRows = static_cast<size_t>(GetFinest().GetNumRows());
-        for (auto* rows : {&x, &residual, &direction, &image}) rows->assign(numRows, DoubleRow::Zero());
+        for (auto* rows : {&x, &residual, &direction, &image}) rows->assign(numRows, DoubleLanes::Zero());
     }
 
     MultigridLevel const& GetFinest() const { return levels.back(); }
-    DoubleRow ReadRow(std::span<double const> values, Index row) const {
+    DoubleLanes ReadRow(std::span<double const> values, Index row) const {
         double const* const p = &values[3 * static_cast<size_t>(GetFinest().vertices[row])];
         return {p[0], p[1], p[2], 0.0};
     }
-    DoubleRow Apply(std::vector<DoubleRow> const& rows, Index row) const {
+    DoubleLanes Apply(std::vector<DoubleLanes> const& rows, Index row) const {
         return ApplyRow(GetFinest(), weights, rows.data(), row);
     }
 
-    std::vector<DoubleRow> FindMeans(std::span<double const> rightSide) const;
-    double FormResidual(std::span<double const> rightSide, std::vector<DoubleRow> const& means);
-    DoubleRow Precondition(DoubleRow const& scale);
-    void Turn(DoubleRow const& scale, DoubleRow const& momentum);
+    std::vector<DoubleLanes> FindMeans(std::span<double const> rightSide) const;
+    double FormResidual(std::span<double const> rightSide, std::vector<DoubleLanes> const& means);
+    DoubleLanes Precondition(DoubleLanes const& scale);
+    void Turn(DoubleLanes const& scale, DoubleLanes const& momentum);
 
     std::vector<MultigridLevel> levels;
     VCycle cycle;
     RowWeights<double> weights;  // of the finest level
     bool areConstantsFree = true;
-    std::vector<DoubleRow> x, residual, direction, image;  // per row; those of fixed vertices are zero but in x
-    DoubleRow curvature;  // direction . image, last
+    std::vector<DoubleLanes> x, residual, direction, image;  // per row; those of fixed vertices are zero but in x
+    DoubleLanes curvature;  // direction . image, last
 };
 
 namespace {
 
 /// a / b per lane; 0 where there is nothing left to divide by.
-DoubleRow Divide(DoubleRow const& a, DoubleRow const& b) {
+DoubleLanes Divide(DoubleLanes const& a, DoubleLanes const& b) {
     return (b > 0.0).select(a / (b > 0.0).select(b, 1.0), 0.0);
 }
 
 }  // namespace
 
 /// Per block, the part of the right-hand side that no solution has: its mean where constants are free.
-std::vector<DoubleRow> Multigrid::Implementation::FindMeans(std::span<double const> rightSide) const {
-    std::vector<DoubleRow> means;
+std::vector<DoubleLanes> Multigrid::Implementation::FindMeans(std::span<double const> rightSide) const {
+    std::vector<DoubleLanes> means;
     for (auto const& block : GetFinest().blocks) {
         Index const size = block.end - block.begin;
         bool const isProjected = block.isSingular && areConstantsFree;
-        means.push_back(DoubleRow::Zero());
+        means.push_back(DoubleLanes::Zero());
         if (isProjected) means.back() = SumRows(size, [&](Index i) { return ReadRow(rightSide, block.begin + i); }) / size;
     }
     return means;
 }
 
 /// residual = b - G x with the projected b. \return |b|
-double Multigrid::Implementation::FormResidual(std::span<double const> rightSide, std::vector<DoubleRow> const& means) {
-    DoubleRow norm = DoubleRow::Zero();
+double Multigrid::Implementation::FormResidual(std::span<double const> rightSide, std::vector<DoubleLanes> const& means) {
+    DoubleLanes norm = DoubleLanes::Zero();
     for (size_t k = 0; k < means.size(); ++k) {
         auto const& block = GetFinest().blocks[k];
-        norm += SumRows(block.end - block.begin, [&](Index i) -> DoubleRow {
-            DoubleRow const b = ReadRow(rightSide, block.begin + i) - means[k];
+        norm += SumRows(block.end - block.begin, [&](Index i) -> DoubleLanes {
+            DoubleLanes const b = ReadRow(rightSide, block.begin + i) - means[k];
             residual[block.begin + i] = b - Apply(x, block.begin + i);
             return b * b;
         });
@@ -129,47 +129,47 @@ double Multigrid::Implementation::FormResidual(std::span<double const> rightSide
 }
 
 /// Runs the cycle on the residual times `scale`, which keeps floats in range. \return residual . result / scale
-DoubleRow Multigrid::Implementation::Precondition(DoubleRow const& scale) {
+DoubleLanes Multigrid::Implementation::Precondition(DoubleLanes const& scale) {
     auto& scaled = cycle.GetRightSide();
     ForEachRow(GetFinest().numUnknowns, [&](Index row) { scaled[row] = (residual[row] * scale).cast<float>(); });
     auto const& z = cycle.Run();
-    return Divide(SumRows(GetFinest().numUnknowns, [&](Index row) -> DoubleRow { return residual[row] * z[row].cast<double>(); }),
+    return Divide(SumRows(GetFinest().numUnknowns, [&](Index row) -> DoubleLanes { return residual[row] * z[row].cast<double>(); }),
                   scale);
 }
 
 /// The next direction, conjugate to those before, and its image.
-void Multigrid::Implementation::Turn(DoubleRow const& scale, DoubleRow const& momentum) {
+void Multigrid::Implementation::Turn(DoubleLanes const& scale, DoubleLanes const& momentum) {
     auto const& z = cycle.GetResult();
-    DoubleRow const unscale = Divide(DoubleRow::Ones(), scale);
+    DoubleLanes const unscale = Divide(DoubleLanes::Ones(), scale);
     ForEachRow(GetFinest().numUnknowns,
                [&](Index row) { direction[row] = unscale * z[row].cast<double>() + momentum * direction[row]; });
-    curvature = SumRows(GetFinest().numUnknowns, [&](Index row) -> DoubleRow {
+    curvature = SumRows(GetFinest().numUnknowns, [&](Index row) -> DoubleLanes {
         image[row] = Apply(direction, row);
         return image[row] * direction[row];
     });
 }
 
-SolveReport Multigrid::Solve(std::span<double const> rightSide, std::span<double> solution, SolveOptions const& options) {
+MultigridReport Multigrid::Solve(std::span<double const> rightSide, std::span<double> solution, MultigridOptions const& options) {
     auto& self = *_implementation;
     MultigridLevel const& level = self.GetFinest();
     ForEachRow(level.GetNumRows(), [&](Index row) { self.x[row] = self.ReadRow(solution, row); });
     auto const means = self.FindMeans(rightSide);
     double const size = self.FormResidual(rightSide, means);
-    DoubleRow squares = SumRows(level.numUnknowns, [&](Index row) -> DoubleRow { return self.residual[row].square(); });
+    DoubleLanes squares = SumRows(level.numUnknowns, [&](Index row) -> DoubleLanes { return self.residual[row].square(); });
     double const unit = size > 0.0 ? size : std::sqrt(squares.sum());  // b = 0: relative to where it started
     double const goal = options.tolerance * unit;
 
-    SolveReport report;
+    MultigridReport report;
     report.converged = std::sqrt(squares.sum()) <= goal;
     ForEachRow(level.GetNumRows(), [&](Index row) { self.direction[row].setZero(); });
-    DoubleRow product = DoubleRow::Zero();
+    DoubleLanes product = DoubleLanes::Zero();
     while (!report.converged && report.iterations < options.maxIterations) {
-        DoubleRow const scale = Divide(DoubleRow::Ones(), squares.sqrt());
-        DoubleRow const nextProduct = self.Precondition(scale);
+        DoubleLanes const scale = Divide(DoubleLanes::Ones(), squares.sqrt());
+        DoubleLanes const nextProduct = self.Precondition(scale);
         self.Turn(scale, Divide(nextProduct, product));
         product = nextProduct;
-        DoubleRow const step = Divide(product, self.curvature);
-        squares = SumRows(level.numUnknowns, [&](Index row) -> DoubleRow {
+        DoubleLanes const step = Divide(product, self.curvature);
+        squares = SumRows(level.numUnknowns, [&](Index row) -> DoubleLanes {
             self.x[row] += step * self.direction[row];
             self.residual[row] -= step * self.image[row];
             return self.residual[row].square();
@@ -178,7 +178,7 @@ SolveReport Multigrid::Solve(std::span<double const> rightSide, std::span<double
         report.converged = std::sqrt(squares.sum()) <= goal;
     }
     self.FormResidual(rightSide, means);
-    squares = SumRows(level.numUnknowns, [&](Index row) -> DoubleRow { return self.residual[row].square(); });
+    squares = SumRows(level.numUnknowns, [&](Index row) -> DoubleLanes { return self.residual[row].square(); });
     report.residual = unit > 0.0 ? std::sqrt(squares.sum()) / unit : 0.0;
     ForEachRow(level.numUnknowns, [&](Index row) {
         double* const p = &solution[3 * static_cast<size_t>(level.vertices[row])];

@@ -9,13 +9,13 @@
 namespace limn::eval {
 
 /// What became of an iteration. Not converging is an answer: the caller decides.
-struct SolveReport {
+struct MultigridReport {
     int iterations = 0;
     double residual = 0.0;  ///< |b - G x| / |b| of the solution handed back; where b = 0, over what it started from
     bool converged = false;
 };
 
-struct SolveOptions {
+struct MultigridOptions {
     double tolerance = 1e-8;
     int maxIterations = 60;
 };
@@ -56,7 +56,7 @@ public:
     /// \param rightSide  3 per vertex of the last level; entries of fixed vertices are not read
     /// \param solution   3 per vertex: what to start from, and the result. Fixed vertices keep theirs, and
     ///                   their neighbours see it
-    SolveReport Solve(std::span<double const> rightSide, std::span<double> solution, SolveOptions const& options = {});
+    MultigridReport Solve(std::span<double const> rightSide, std::span<double> solution, MultigridOptions const& options = {});
 
     std::vector<MultigridLevel> const& GetLevels() const;
 

@@ -14,16 +14,16 @@ namespace limn::eval {
 
 namespace {
 
-DoubleRow Get(std::span<double const> values, Index vertex) {
+DoubleLanes Get(std::span<double const> values, Index vertex) {
     double const* const p = values.data() + 3 * static_cast<size_t>(vertex);
     return {p[0], p[1], p[2], 0.0};
 }
 
-void Set(std::span<double> values, Index vertex, DoubleRow const& row) {
+void Set(std::span<double> values, Index vertex, DoubleLanes const& row) {
     for (Index c = 0; c < 3; ++c) values[3 * static_cast<size_t>(vertex) + static_cast<size_t>(c)] = row[c];
 }
 
-double RelativeDefect(DoubleRow const& sum, double sumOfLengths) {
+double RelativeDefect(DoubleLanes const& sum, double sumOfLengths) {
     return sumOfLengths > 0.0 ? std::sqrt(sum.square().sum()) / sumOfLengths : 0.0;
 }
 
@@ -79,10 +79,10 @@ void Reconstructor::ChooseHandles(Far::TopologyRefiner const& refiner, std::span
 /// A boundary loop as a curve, moved so that its handle stays. \return the compatibility defect
 double Reconstructor::SolveLoop(std::vector<Index> const& loop, Index handle, std::span<double const> deltas,
                                 std::span<double> positions) const {
-    std::vector<DoubleRow> ofLoop, points;
+    std::vector<DoubleLanes> ofLoop, points;
     for (Index vertex : loop) ofLoop.push_back(Get(deltas, vertex));
     double const defect = SolveClosedCurve(ofLoop, points);
-    DoubleRow const place = Get(positions, handle);
+    DoubleLanes const place = Get(positions, handle);
     auto const at = static_cast<size_t>(std::find(loop.begin(), loop.end(), handle) - loop.begin());
     for (size_t i = 0; i < loop.size(); ++i) Set(positions, loop[i], points[i] - points[at] + place);
     return defect;
@@ -93,8 +93,8 @@ double Reconstructor::ProjectBlock(MultigridLevel::Block const& block, std::span
     MultigridLevel const& level = _multigrid.GetLevels().back();
     Index const size = block.end - block.begin;
     auto const degree = [&](Index row) { return static_cast<double>(level.offsets[row + 1] - level.offsets[row]); };
-    DoubleRow const sum = SumRows(size, [&](Index i) { return Get(rightSide, level.vertices[block.begin + i]); });
-    DoubleRow const sums = SumRows(size, [&](Index i) -> DoubleRow {
+    DoubleLanes const sum = SumRows(size, [&](Index i) { return Get(rightSide, level.vertices[block.begin + i]); });
+    DoubleLanes const sums = SumRows(size, [&](Index i) -> DoubleLanes {
         Index const row = block.begin + i;
         double const length = std::sqrt(Get(rightSide, level.vertices[row]).square().sum());
         return {length, degree(row) * degree(row), 0.0, 0.0};
@@ -106,7 +106,7 @@ double Reconstructor::ProjectBlock(MultigridLevel::Block const& block, std::span
     return RelativeDefect(sum, sums[0]);
 }
 
-ReconstructReport Reconstructor::Solve(std::span<double const> deltas, std::span<double> positions, SolveOptions const& options) {
+ReconstructReport Reconstructor::Solve(std::span<double const> deltas, std::span<double> positions, MultigridOptions const& options) {
     MultigridLevel const& level = _multigrid.GetLevels().back();
     ReconstructReport report;
     for (size_t i = 0; i < _loops.size(); ++i) {
@@ -117,19 +117,19 @@ ReconstructReport Reconstructor::Solve(std::span<double const> deltas, std::span
         Index const vertex = level.vertices[row];
         Set(rightSide, vertex, static_cast<double>(level.offsets[row + 1] - level.offsets[row]) * Get(deltas, vertex));
     });
-    std::vector<DoubleRow> places;
+    std::vector<DoubleLanes> places;
     for (Index handle : _handles) places.push_back(Get(positions, handle));
     for (auto const& block : level.blocks) {
         if (block.isSingular) report.compatibilityDefect = std::max(report.compatibilityDefect, ProjectBlock(block, rightSide));
     }
-    SolveReport const solve = _multigrid.Solve(rightSide, positions, options);
+    MultigridReport const solve = _multigrid.Solve(rightSide, positions, options);
     report.iterations = solve.iterations;
     report.residual = solve.residual;
     report.converged = solve.converged;
     size_t handle = _loops.size();
     for (auto const& block : level.blocks) {
         if (!block.isSingular) continue;
-        DoubleRow const shift = places[handle] - Get(positions, _handles[handle]);
+        DoubleLanes const shift = places[handle] - Get(positions, _handles[handle]);
         ForEachRow(block.end - block.begin, [&](Index i) {
             Index const vertex = level.vertices[block.begin + i];
             Set(positions, vertex, Get(positions, vertex) + shift);

@@ -37,7 +37,7 @@ public:
     /// \param deltas     3 per vertex of the last level: differential coordinates there, already scaled (4^-k)
     /// \param positions  3 per vertex: where to start and where handles lie, then the result. Vertices without
     ///                   an edge stay
-    ReconstructReport Solve(std::span<double const> deltas, std::span<double> positions, SolveOptions const& options = {});
+    ReconstructReport Solve(std::span<double const> deltas, std::span<double> positions, MultigridOptions const& options = {});
 
     Multigrid& GetMultigrid() { return _multigrid; }
     std::vector<Index> const& GetHandles() const { return _handles; }  ///< on the last level

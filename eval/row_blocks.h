@@ -10,8 +10,8 @@
 namespace limn::eval {
 
 /// Three right-hand sides side by side, and a fourth lane that stays 0.
-using FloatRow = Eigen::Array4f;
-using DoubleRow = Eigen::Array4d;
+using FloatLanes = Eigen::Array4f;
+using DoubleLanes = Eigen::Array4d;
 
 constexpr Index kRowsPerBlock = 2048;
 
@@ -39,15 +39,15 @@ void ForEachRow(Index numRows, Run const& run) {
 
 /// Sum of term(row), added within blocks and then block after block: the same bits whatever the threads.
 template <class Term>
-DoubleRow SumRows(Index numRows, Term const& term) {
-    std::vector<DoubleRow> partial(static_cast<size_t>(numRows / kRowsPerBlock + 1), DoubleRow::Zero());
+DoubleLanes SumRows(Index numRows, Term const& term) {
+    std::vector<DoubleLanes> partial(static_cast<size_t>(numRows / kRowsPerBlock + 1), DoubleLanes::Zero());
     ForEachBlock(numRows, [&](Index begin, Index end, size_t block) {
-        DoubleRow sum = DoubleRow::Zero();
+        DoubleLanes sum = DoubleLanes::Zero();
         for (Index row = begin; row < end; ++row) sum += term(row);
         partial[block] = sum;
     });
-    DoubleRow total = DoubleRow::Zero();
-    for (DoubleRow const& sum : partial) total += sum;
+    DoubleLanes total = DoubleLanes::Zero();
+    for (DoubleLanes const& sum : partial) total += sum;
     return total;
 }
 

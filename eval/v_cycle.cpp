@@ -16,7 +16,7 @@ constexpr float kSmoothedShare = 4.0f;
 VCycle::VCycle(std::vector<MultigridLevel> const& levels) : _levels(levels), _work(levels.size()) {
     for (size_t k = 0; k < levels.size(); ++k) {
         auto const numRows = static_cast<size_t>(levels[k].GetNumRows());
-        for (auto* rows : {&_work[k].rightSide, &_work[k].x, &_work[k].next}) rows->assign(numRows, FloatRow::Zero());
+        for (auto* rows : {&_work[k].rightSide, &_work[k].x, &_work[k].next}) rows->assign(numRows, FloatLanes::Zero());
     }
 }
 
@@ -62,12 +62,12 @@ void VCycle::FactoriseCoarsest() {
 void VCycle::SolveCoarsest() {
     MultigridLevel const& level = _levels.front();
     Work& work = _work.front();
-    auto const subtractMean = [&](std::vector<FloatRow>& rows) {
+    auto const subtractMean = [&](std::vector<FloatLanes>& rows) {
         for (auto const& block : level.blocks) {
             if (!block.isSingular || !_areConstantsFree) continue;
-            DoubleRow sum = DoubleRow::Zero();
+            DoubleLanes sum = DoubleLanes::Zero();
             for (Index row = block.begin; row < block.end; ++row) sum += rows[row].cast<double>();
-            FloatRow const mean = (sum / (block.end - block.begin)).cast<float>();
+            FloatLanes const mean = (sum / (block.end - block.begin)).cast<float>();
             for (Index row = block.begin; row < block.end; ++row) rows[row] -= mean;
         }
     };
@@ -93,14 +93,14 @@ void VCycle::Smooth(size_t k, bool startsAtZero) {
     float const high = _largestEigenvalues[k], low = high / kSmoothedShare;
     float const middle = 0.5f * (high + low), half = 0.5f * (high - low);
     float rho = half / middle;
-    FloatRow const* const b = work.rightSide.data();
+    FloatLanes const* const b = work.rightSide.data();
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
         float const nextRho = sweep == 0 ? rho : 1.0f / (2.0f * middle / half - rho);
         float const step = sweep == 0 ? 1.0f / middle : 2.0f * nextRho / half;
         float const momentum = sweep == 0 ? 0.0f : nextRho * rho;
         rho = nextRho;
-        FloatRow* const x = work.x.data();
-        FloatRow* const next = work.next.data();
+        FloatLanes* const x = work.x.data();
+        FloatLanes* const next = work.next.data();
         if (sweep == 0 && startsAtZero) {
             ForEachRow(level.numUnknowns, [&](Index row) {
                 next[row] = step / GetDiagonal(level, weights, row) * b[row];
@@ -124,10 +124,10 @@ void VCycle::Smooth(size_t k, bool startsAtZero) {
 /// neighbours of a vertex that was kept are the middles of its edges, and perhaps middles of faces are theirs.
 void VCycle::Restrict(size_t k) {
     MultigridLevel const &fine = _levels[k], &coarse = _levels[k - 1];
-    FloatRow const* const residual = _work[k].next.data();
+    FloatLanes const* const residual = _work[k].next.data();
     ForEachRow(coarse.numUnknowns, [&](Index row) {
         Index const child = coarse.children[row];
-        FloatRow sum = FloatRow::Zero();
+        FloatLanes sum = FloatLanes::Zero();
         for (int i = fine.offsets[child]; i < fine.offsets[child + 1]; ++i) {
             Index const middle = fine.neighbours[i];
             if (middle >= fine.numUnknowns) continue;
@@ -145,9 +145,9 @@ void VCycle::Restrict(size_t k) {
 
 void VCycle::Prolong(size_t k) {
     MultigridLevel const& fine = _levels[k];
-    FloatRow const* const coarse = _work[k - 1].x.data();
-    FloatRow* const x = _work[k].x.data();
-    auto const meanOfParents = [&](Index row) -> FloatRow {
+    FloatLanes const* const coarse = _work[k - 1].x.data();
+    FloatLanes* const x = _work[k].x.data();
+    auto const meanOfParents = [&](Index row) -> FloatLanes {
         auto const& [a, b] = fine.parents[row];
         return 0.5f * (coarse[a] + coarse[b]);
     };
@@ -156,7 +156,7 @@ void VCycle::Prolong(size_t k) {
             x[row] += meanOfParents(row);
             return;
         }
-        FloatRow sum = FloatRow::Zero();
+        FloatLanes sum = FloatLanes::Zero();
         for (int i = fine.offsets[row]; i < fine.offsets[row + 1]; ++i) {
             if (fine.neighbours[i] < fine.numUnknowns) sum += meanOfParents(fine.neighbours[i]);
         }
@@ -177,14 +177,14 @@ void VCycle::Descend(size_t k) {
     Smooth(k, false);
 }
 
-std::vector<FloatRow> const& VCycle::Run() {
+std::vector<FloatLanes> const& VCycle::Run() {
     Descend(_levels.size() - 1);
     return GetResult();
 }
 
 size_t VCycle::GetNumBytes() const {
     size_t bytes = 0;
-    for (auto const& work : _work) bytes += 3 * work.x.size() * sizeof(FloatRow);
+    for (auto const& work : _work) bytes += 3 * work.x.size() * sizeof(FloatLanes);
     for (auto const& weights : _weights) bytes += (weights.entries.size() + weights.diagonals.size()) * sizeof(float);
     return bytes;
 }

@@ -55,19 +55,19 @@ public:
     void SetWeights(std::vector<RowWeights<float>> weights, std::vector<float> largestEigenvalues, bool areConstantsFree);
 
     /// The finest level's right-hand side, to be filled; one entry per row, those of fixed vertices are zero.
-    std::vector<FloatRow>& GetRightSide() { return _work.back().rightSide; }
+    std::vector<FloatLanes>& GetRightSide() { return _work.back().rightSide; }
 
     /// Runs one cycle. \return per row of the finest level
-    std::vector<FloatRow> const& Run();
+    std::vector<FloatLanes> const& Run();
 
     /// What Run returned last.
-    std::vector<FloatRow> const& GetResult() const { return _work.back().x; }
+    std::vector<FloatLanes> const& GetResult() const { return _work.back().x; }
 
     size_t GetNumBytes() const;
 
 private:
     struct Work {
-        std::vector<FloatRow> rightSide, x, next;
+        std::vector<FloatLanes> rightSide, x, next;
     };
 
     void Descend(size_t k);

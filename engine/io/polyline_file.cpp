@@ -22,7 +22,7 @@ size_t ResolveIndex(TextScanner& scan, std::string_view word, size_t count) {
     return static_cast<size_t>(index);
 }
 
-eval::Curve ReadLine(TextScanner& scan, std::vector<eval::DoubleRow> const& points) {
+eval::Curve ReadLine(TextScanner& scan, std::vector<eval::DoubleLanes> const& points) {
     std::vector<size_t> indices;
     scan.DropComment();
     for (std::string_view word = scan.Word(); !word.empty(); word = scan.Word()) {
@@ -45,7 +45,7 @@ eval::Curve ReadLine(TextScanner& scan, std::vector<eval::DoubleRow> const& poin
 std::vector<eval::Curve> ReadPolylines(std::string const& path) {
     InputFile const file(path);
     TextScanner scan(file.GetBytes(), path);
-    std::vector<eval::DoubleRow> points;
+    std::vector<eval::DoubleLanes> points;
     std::vector<eval::Curve> curves;
     while (scan.NextLine()) {
         std::string_view const keyword = scan.Word();
@@ -70,7 +70,7 @@ void WritePolylines(std::string const& path, std::vector<eval::Curve> const& cur
     auto const to = std::back_inserter(text);
     size_t first = 1;
     for (eval::Curve const& curve : curves) {
-        for (eval::DoubleRow const& p : curve.points) {
+        for (eval::DoubleLanes const& p : curve.points) {
             if (isDouble) fmt::format_to(to, "v {} {} {}\n", p[0], p[1], p[2]);
             else fmt::format_to(to, "v {} {} {}\n", static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]));
         }

@@ -9,7 +9,7 @@ namespace {
 
 using eval::Curve;
 using eval::CurveRule;
-using eval::DoubleRow;
+using eval::DoubleLanes;
 
 Curve MakePolygon(int n) {
     Curve curve{{}, true};
@@ -22,10 +22,10 @@ Curve MakePolygon(int n) {
 
 /// Mean distance from the mean point.
 double RadiusOf(Curve const& curve) {
-    DoubleRow mean = DoubleRow::Zero();
-    for (DoubleRow const& p : curve.points) mean += p / static_cast<double>(curve.points.size());
+    DoubleLanes mean = DoubleLanes::Zero();
+    for (DoubleLanes const& p : curve.points) mean += p / static_cast<double>(curve.points.size());
     double radius = 0.0;
-    for (DoubleRow const& p : curve.points) radius += std::sqrt((p - mean).square().sum()) / static_cast<double>(curve.points.size());
+    for (DoubleLanes const& p : curve.points) radius += std::sqrt((p - mean).square().sum()) / static_cast<double>(curve.points.size());
     return radius;
 }
 
