@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -11,8 +10,8 @@
 
 #include "engine/job.h"
 #include "eval/graded_points.h"
-#include "eval/multigrid_levels.h"
 #include "eval/surface_sample.h"
+#include "far_ext/face_components.h"
 
 namespace limn::engine {
 
@@ -70,47 +69,31 @@ CurvatureStatistics MakeStatistics(Sums const& sums, double sum, double squares,
 class Surveyor {
 public:
     Surveyor(Scene const& scene, Far::TopologyRefiner const& refiner, double orientation)
-        : _scene(scene), _refiner(refiner), _level(refiner.GetLevel(0)), _orientation(orientation) {
-        FindComponents();
-    }
+        : _scene(scene),
+          _refiner(refiner),
+          _level(refiner.GetLevel(0)),
+          _orientation(orientation),
+          _components(far_ext::FaceComponents::Find(_level)) {}
 
     std::vector<Sums> SurveyLimit() const;
     std::vector<Sums> SurveyMesh() const;
     Measurement Conclude(std::vector<Sums> const& ofComponents, MeasuredSurface surface) const;
 
 private:
-    void FindComponents();
     std::vector<std::string> FindReasons(MeasuredSurface surface) const;
-    std::vector<int> FindEulerCharacteristics() const;
 
     Scene const& _scene;
     Far::TopologyRefiner const& _refiner;
     Level _level;
     double _orientation;
-    size_t _numComponents = 0;
-    std::vector<int> _component;  // per face, numbered by their lowest face
+    far_ext::FaceComponents _components;
 };
-
-void Surveyor::FindComponents() {
-    auto const graph = eval::BuildMultigridLevels(_refiner, eval::FixedVertices::None).front();
-    std::vector<int> blockOf(graph.vertices.size(), -1);
-    for (size_t block = 0; block < graph.blocks.size(); ++block) {
-        auto const [begin, end, isSingular] = graph.blocks[block];
-        for (Index row = begin; row < end; ++row) blockOf[graph.vertices[row]] = static_cast<int>(block);
-    }
-    std::map<int, int> numbers;
-    for (Index face = 0; face < _level.GetNumFaces(); ++face) {
-        int const block = blockOf[_level.GetFaceVertices(face)[0]];
-        _component.push_back(numbers.try_emplace(block, static_cast<int>(numbers.size())).first->second);
-    }
-    _numComponents = numbers.size();
-}
 
 /// Sums of faces, added in order: the same bits whatever the threads.
 std::vector<Sums> Surveyor::SurveyLimit() const {
     eval::LimitSurface const surface(_refiner);
     eval::GradedPoints const points(surface);
-    std::vector<Sums> ofFaces(_component.size());
+    std::vector<Sums> ofFaces(_components.ofFace.size());
     tbb::enumerable_thread_specific<eval::FaceTree> trees([&] { return eval::FaceTree(surface, _scene.positions, 3); });
     tbb::parallel_for(tbb::blocked_range<Index>(0, surface.GetNumFaces(), 64), [&](auto const& faces) {
         CheckInterrupted();
@@ -126,17 +109,17 @@ std::vector<Sums> Surveyor::SurveyLimit() const {
             });
         }
     });
-    std::vector<Sums> ofComponents(_numComponents);
-    for (size_t face = 0; face < ofFaces.size(); ++face) ofComponents[_component[face]].Add(ofFaces[face]);
+    std::vector<Sums> ofComponents(static_cast<size_t>(_components.count));
+    for (size_t face = 0; face < ofFaces.size(); ++face) ofComponents[_components.ofFace[face]].Add(ofFaces[face]);
     return ofComponents;
 }
 
 std::vector<Sums> Surveyor::SurveyMesh() const {
-    std::vector<Sums> ofComponents(_numComponents);
+    std::vector<Sums> ofComponents(static_cast<size_t>(_components.count));
     auto const curvature = eval::MeasureMeshCurvature(_level, _scene.positions, _orientation);
     for (Index vertex = 0; vertex < _level.GetNumVertices(); ++vertex) {
         if (!(curvature.areas[vertex] > 0.0)) continue;
-        Sums& sums = ofComponents[_component[_level.GetVertexFaces(vertex)[0]]];
+        Sums& sums = ofComponents[_components.ofFace[_level.GetVertexFaces(vertex)[0]]];
         sums.AddCurvature(curvature.areas[vertex], curvature.k1[vertex], curvature.k2[vertex]);
     }
     auto const normals = eval::FindFaceNormals(_level, _scene.positions);
@@ -148,17 +131,17 @@ std::vector<Sums> Surveyor::SurveyMesh() const {
             double const* const p = &_scene.positions[3 * static_cast<size_t>(vertex)];
             heights += (p[0] * n[0] + p[1] * n[1] + p[2] * n[2]) / vertices.size();
         }
-        ofComponents[_component[face]].volume += _orientation * heights / 3.0;
+        ofComponents[_components.ofFace[face]].volume += _orientation * heights / 3.0;
     }
     return ofComponents;
 }
 
 /// Per component why its integral of K is not to be compared with 2 pi chi; empty where it is.
 std::vector<std::string> Surveyor::FindReasons(MeasuredSurface surface) const {
-    std::vector<std::string> reasons(_numComponents);
+    std::vector<std::string> reasons(static_cast<size_t>(_components.count));
     bool const isLimit = surface == MeasuredSurface::Limit;
     for (Index face = 0; face < _level.GetNumFaces(); ++face) {
-        std::string& reason = reasons[_component[face]];
+        std::string& reason = reasons[_components.ofFace[face]];
         if (!reason.empty()) continue;
         if (isLimit && _scene.cage.scheme == Sdc::SCHEME_BILINEAR) reason = "a bilinear surface has a crease along every edge";
         if (isLimit && _level.IsFaceHole(face)) reason = "it has a hole";
@@ -173,22 +156,12 @@ std::vector<std::string> Surveyor::FindReasons(MeasuredSurface surface) const {
     return reasons;
 }
 
-std::vector<int> Surveyor::FindEulerCharacteristics() const {
-    std::vector<int> euler(_numComponents, 0);
-    for (int component : _component) ++euler[component];
-    for (Index vertex = 0; vertex < _level.GetNumVertices(); ++vertex) {
-        if (_level.GetVertexFaces(vertex).size()) ++euler[_component[_level.GetVertexFaces(vertex)[0]]];
-    }
-    for (Index edge = 0; edge < _level.GetNumEdges(); ++edge) --euler[_component[_level.GetEdgeFaces(edge)[0]]];
-    return euler;
-}
-
 Measurement Surveyor::Conclude(std::vector<Sums> const& ofComponents, MeasuredSurface surface) const {
     Measurement result;
     auto const reasons = FindReasons(surface);
-    auto const euler = FindEulerCharacteristics();
+    auto const euler = _components.FindEulerCharacteristics(_level);
     Sums all;
-    for (size_t c = 0; c < _numComponents; ++c) {
+    for (size_t c = 0; c < static_cast<size_t>(_components.count); ++c) {
         Sums const& sums = ofComponents[c];
         all.Add(sums);
         GaussBonnetAudit audit;

@@ -29,17 +29,19 @@ inline FacePlace GetEdgePlace(LimitSurface const& surface, Index face, int size,
     return {0, a.s + tau * (b.s - a.s), a.t + tau * (b.t - a.t)};
 }
 
+/// Gauss points and weights of [0, 1].
+inline constexpr double kGaussNodes[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
+inline constexpr double kGaussWeights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+
 /// Calls visit(FacePlace, weight) for the 3 x 3 Gauss points of every domain; weights add up to the
 /// domain's area (1, on a triangle 1/2). A triangle is the square with one side collapsed.
 template <class Visit>
 void ForEachGaussPoint(LimitSurface const& surface, Index face, Visit visit) {
-    constexpr double kNodes[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
-    constexpr double kWeights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
     for (int domain = 0; domain < surface.GetNumDomains(face); ++domain) {
         for (int j = 0; j < 3; ++j) {
-            double const width = surface.IsLoop() ? 1.0 - kNodes[j] : 1.0;
+            double const width = surface.IsLoop() ? 1.0 - kGaussNodes[j] : 1.0;
             for (int i = 0; i < 3; ++i) {
-                visit(FacePlace{domain, kNodes[i] * width, kNodes[j]}, kWeights[i] * kWeights[j] * width);
+                visit(FacePlace{domain, kGaussNodes[i] * width, kGaussNodes[j]}, kGaussWeights[i] * kGaussWeights[j] * width);
             }
         }
     }

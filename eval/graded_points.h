@@ -36,8 +36,6 @@ public:
 private:
     static constexpr int kMinDepth = 1;  // 4 pieces also where all is regular: Spot's integral of K errs by 1e-3, not 8e-3
     static constexpr int kMaxDepth = 10;
-    static constexpr double kNodes[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
-    static constexpr double kWeights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
     using Corner = std::array<double, 2>;
 
     bool IsIrregular(Index vertex) const {
@@ -56,7 +54,7 @@ private:
         }
         for (int j = 0; j < 3; ++j) {
             for (int i = 0; i < 3; ++i) {
-                visit(FacePlace{domain, s + size * kNodes[i], t + size * kNodes[j]}, size * size * kWeights[i] * kWeights[j]);
+                visit(FacePlace{domain, s + size * kGaussNodes[i], t + size * kGaussNodes[j]}, size * size * kGaussWeights[i] * kGaussWeights[j]);
             }
         }
     }
@@ -74,12 +72,12 @@ private:
         }
         double const area = std::abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
         for (int j = 0; j < 3; ++j) {
-            double const width = 1.0 - kNodes[j];  // a triangle is the square with one side collapsed
+            double const width = 1.0 - kGaussNodes[j];  // a triangle is the square with one side collapsed
             for (int i = 0; i < 3; ++i) {
-                double const u = kNodes[i] * width, v = kNodes[j];
+                double const u = kGaussNodes[i] * width, v = kGaussNodes[j];
                 double const s = a[0] + u * (b[0] - a[0]) + v * (c[0] - a[0]);
                 double const t = a[1] + u * (b[1] - a[1]) + v * (c[1] - a[1]);
-                visit(FacePlace{domain, s, t}, area * kWeights[i] * kWeights[j] * width);
+                visit(FacePlace{domain, s, t}, area * kGaussWeights[i] * kGaussWeights[j] * width);
             }
         }
     }

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <memory>
-#include <numeric>
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -13,6 +11,7 @@
 #include "engine/bake/extraordinary_discs.h"
 #include "eval/face_places.h"
 #include "eval/surface_sampler.h"
+#include "far_ext/face_components.h"
 
 namespace limn::engine {
 
@@ -22,32 +21,10 @@ using Level = Far::TopologyLevel;
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kBandRows = 64;
 
-/// Components of faces that share vertices, numbered by their lowest face.
-std::vector<int> FindComponents(Level const& level, int& count) {
-    std::vector<Index> parent(static_cast<size_t>(level.GetNumVertices()));
-    std::iota(parent.begin(), parent.end(), 0);
-    auto const root = [&](Index v) {
-        while (parent[v] != v) v = parent[v] = parent[parent[v]];
-        return v;
-    };
-    for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        auto const vertices = level.GetFaceVertices(face);
-        for (Index v : vertices) parent[root(v)] = root(vertices[0]);
-    }
-    std::map<Index, int> numbers;
-    std::vector<int> component(static_cast<size_t>(level.GetNumFaces()));
-    for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        Index const r = root(level.GetFaceVertices(face)[0]);
-        component[face] = numbers.try_emplace(r, static_cast<int>(numbers.size())).first->second;
-    }
-    count = static_cast<int>(numbers.size());
-    return component;
-}
-
 class GaussBonnetAuditor {
 public:
     explicit GaussBonnetAuditor(AuditInput const& input)
-        : _input(input), _component(FindComponents(input.level, _numComponents)) {}
+        : _input(input), _components(far_ext::FaceComponents::Find(input.level)) {}
 
     std::vector<GaussBonnetAudit> Run();
 
@@ -77,15 +54,13 @@ private:
     };
 
     std::vector<double> FindAreas() const;
-    std::vector<int> FindEulerCharacteristics() const;
     std::string FindReason(int component) const;
     std::vector<std::vector<Index>> BinFaces(TileGrid const& grid, std::vector<UVBounds> const& bounds) const;
     std::vector<Sums> SumTexels(ExtraordinaryDiscs const& discs) const;
     void SumFace(Worker& worker, ExtraordinaryDiscs const& discs, Index face, TileGrid const& grid, Sums& sums) const;
 
     AuditInput const& _input;
-    int _numComponents = 0;
-    std::vector<int> _component;  // per face
+    far_ext::FaceComponents _components;
 };
 
 /// Per band, the faces whose bounds reach a texel centre of it, in ascending order.
@@ -108,7 +83,7 @@ std::vector<std::vector<Index>> GaussBonnetAuditor::BinFaces(TileGrid const& gri
 /// K dA over texel centres, per component; band sums are added in order, whatever the threads.
 std::vector<GaussBonnetAuditor::Sums> GaussBonnetAuditor::SumTexels(ExtraordinaryDiscs const& discs) const {
     tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers;
-    std::vector<Sums> total(static_cast<size_t>(_numComponents));
+    std::vector<Sums> total(static_cast<size_t>(_components.count));
     std::vector<UVBounds> bounds(_input.isBaked.size());
     UVRaster measure(_input.uvSurface, _input.scene.uvs);
     for (Index face = 0; face < static_cast<Index>(bounds.size()); ++face) {
@@ -124,10 +99,10 @@ std::vector<GaussBonnetAuditor::Sums> GaussBonnetAuditor::SumTexels(Extraordinar
             if (!slot) slot = std::make_unique<Worker>(_input);
             int const firstRow = static_cast<int>(index) * kBandRows;
             slot->band.Reset(firstRow, std::min(kBandRows, grid.height - firstRow), grid.width);
-            for (Index face : bins[index]) SumFace(*slot, discs, face, grid, ofBand[index][_component[face]]);
+            for (Index face : bins[index]) SumFace(*slot, discs, face, grid, ofBand[index][_components.ofFace[face]]);
             TexelBand const& band = slot->band;
             for (size_t texel = 0; texel < band.owner.size(); ++texel) {
-                if (band.overlap[texel]) ++ofBand[index][_component[band.owner[texel]]].overlaps;
+                if (band.overlap[texel]) ++ofBand[index][_components.ofFace[band.owner[texel]]].overlaps;
             }
         });
         for (auto const& sums : ofBand) {
@@ -167,28 +142,17 @@ void GaussBonnetAuditor::SumFace(Worker& worker, ExtraordinaryDiscs const& discs
 
 /// Surface area per component, to tell whether texels cover it.
 std::vector<double> GaussBonnetAuditor::FindAreas() const {
-    std::vector<double> areas(static_cast<size_t>(_numComponents), 0.0);
+    std::vector<double> areas(static_cast<size_t>(_components.count), 0.0);
     eval::FaceTree tree(_input.surface, _input.scene.positions, 3);
     for (Index face = 0; face < _input.surface.GetNumFaces(); ++face) {
         if (!_input.surface.HasLimit(face)) continue;
         tree.Bind(face);
         eval::ForEachGaussPoint(_input.surface, face, [&](eval::FacePlace const& place, double weight) {
             auto const x = eval::EvaluateSample(tree, place.domain, place.s, place.t, 1.0);
-            areas[_component[face]] += weight * x.tangentS.cross(x.tangentT).norm();
+            areas[_components.ofFace[face]] += weight * x.tangentS.cross(x.tangentT).norm();
         });
     }
     return areas;
-}
-
-std::vector<int> GaussBonnetAuditor::FindEulerCharacteristics() const {
-    Level const& level = _input.level;
-    std::vector<int> euler(static_cast<size_t>(_numComponents), 0);
-    for (Index face = 0; face < level.GetNumFaces(); ++face) ++euler[_component[face]];
-    for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
-        if (level.GetVertexFaces(vertex).size()) ++euler[_component[level.GetVertexFaces(vertex)[0]]];
-    }
-    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) --euler[_component[level.GetEdgeFaces(edge)[0]]];
-    return euler;
 }
 
 /// Why a component cannot be audited, by its topology and tags; empty if it can.
@@ -196,7 +160,7 @@ std::string GaussBonnetAuditor::FindReason(int component) const {
     Level const& level = _input.level;
     if (_input.scene.cage.scheme == Sdc::SCHEME_BILINEAR) return "a bilinear surface has a crease along every edge";
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        if (_component[face] != component) continue;
+        if (_components.ofFace[face] != component) continue;
         if (level.IsFaceHole(face)) return "it has a hole";
         if (!_input.isBaked[face]) return "not all of its faces are baked";
         for (Index edge : level.GetFaceEdges(face)) {
@@ -211,20 +175,20 @@ std::string GaussBonnetAuditor::FindReason(int component) const {
 }
 
 std::vector<GaussBonnetAudit> GaussBonnetAuditor::Run() {
-    std::vector<GaussBonnetAudit> audits(static_cast<size_t>(_numComponents));
-    for (int c = 0; c < _numComponents; ++c) {
+    std::vector<GaussBonnetAudit> audits(static_cast<size_t>(_components.count));
+    for (int c = 0; c < _components.count; ++c) {
         audits[c].component = c;
         audits[c].reason = FindReason(c);
     }
     std::vector<char> isWanted;
-    for (int component : _component) isWanted.push_back(audits[component].reason.empty());
+    for (int component : _components.ofFace) isWanted.push_back(audits[component].reason.empty());
     ExtraordinaryDiscs const discs(_input, isWanted);
     std::vector<Sums> const sums = SumTexels(discs);
     std::vector<double> integrals;
     for (Sums const& sum : sums) integrals.push_back(sum.apart);
-    discs.AddIntegrals(_component, integrals);
+    discs.AddIntegrals(_components.ofFace, integrals);
     std::vector<double> const areas = FindAreas();
-    std::vector<int> const euler = FindEulerCharacteristics();
+    std::vector<int> const euler = _components.FindEulerCharacteristics(_input.level);
 
     for (GaussBonnetAudit& audit : audits) {
         int const c = audit.component;
@@ -234,7 +198,7 @@ std::vector<GaussBonnetAudit> GaussBonnetAuditor::Run() {
         audit.relativeError = std::abs(audit.integral - audit.expected) / std::max(2.0 * kPi, sums[c].magnitude);
         if (audit.reason.empty() && sums[c].overlaps) audit.reason = "its texture coordinates overlap";
         auto const& missed = _input.bake.facesWithoutTexels;
-        auto const numMissed = std::count_if(missed.begin(), missed.end(), [&](Index face) { return _component[face] == c; });
+        auto const numMissed = std::count_if(missed.begin(), missed.end(), [&](Index face) { return _components.ofFace[face] == c; });
         if (audit.reason.empty() && numMissed) {
             audit.reason = fmt::format("{} of its faces have no texel; a larger --size resolves them", numMissed);
         }
