@@ -14,4 +14,5 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/limnConfig.cmake.in ${
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/limnConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/limnConfig.cmake ${PROJECT_BINARY_DIR}/limnConfigVersion.cmake
     ${PROJECT_SOURCE_DIR}/cmake/FindOpenSubdiv.cmake ${PROJECT_SOURCE_DIR}/cmake/FindLibDeflate.cmake
+    ${PROJECT_SOURCE_DIR}/cmake/FindMETIS.cmake
     DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/limn)

@@ -83,6 +83,66 @@ private:
     size_t _begin = 0;
 };
 
+/// p or q: what an edge's rule gives to each side beyond its ends.
+double FindFaceShare(Sdc::SchemeType scheme, Far::TopologyLevel const& level, Far::TopologyLevel const* next, Index edge) {
+    double const smooth = scheme == Sdc::SCHEME_LOOP ? 0.125 : 0.25;
+    float const sharpness = level.GetEdgeSharpness(edge);
+    if (sharpness <= 0.0f) return smooth;
+    if (!next || next->GetVertexRule(level.GetEdgeChildVertex(edge)) == Sdc::Crease::RULE_CREASE) return 0.0;
+    return smooth * static_cast<double>(1.0f - sharpness);
+}
+
+/// \param next  the level after; without one sharpness stays
+Wheel FindWheel(Far::TopologyRefiner const& refiner, Far::TopologyLevel const& level, Far::TopologyLevel const* next, Index vertex) {
+    Sdc::SchemeType const scheme = refiner.GetSchemeType();
+    Sdc::Crease const creasing(refiner.GetSchemeOptions());
+    auto const faces = level.GetVertexFaces(vertex);
+    auto const edges = level.GetVertexEdges(vertex);
+    int const numSpokes = edges.size(), k = faces.size();
+    Wheel wheel;
+    wheel.isInterior = numSpokes == k;
+    for (Index face : faces) wheel.sizes.push_back(level.GetFaceVertices(face).size());
+
+    // Sharpness before and after, and the two rules between which OpenSubdiv blends.
+    std::vector<float> before, after;
+    for (Index edge : edges) {
+        wheel.faceShares.push_back(FindFaceShare(scheme, level, next, edge));
+        before.push_back(level.GetEdgeSharpness(edge));
+        after.push_back(next ? next->GetEdgeSharpness(level.GetEdgeChildEdges(edge)[level.GetEdgeVertices(edge)[0] == vertex ? 0 : 1]) : before.back());
+    }
+    Rule const parent = level.GetVertexRule(vertex);
+    Rule child = parent;
+    double t = 1.0;
+    if (next) {
+        Index const childVertex = level.GetVertexChildVertex(vertex);
+        child = next->GetVertexRule(childVertex);
+        if (parent != child && !IsSmooth(parent)) {
+            t = static_cast<double>(creasing.ComputeFractionalWeightAtVertex(level.GetVertexSharpness(vertex), next->GetVertexSharpness(childVertex),
+                                                                             numSpokes, before.data(), after.data()));
+        }
+    }
+
+    wheel.edgeWeights.assign(static_cast<size_t>(numSpokes), 0.0);
+    double const square = static_cast<double>(numSpokes) * numSpokes;
+    auto const add = [&](Wheel::Rule& target, Rule rule, std::vector<float> const& sharpness, double share) {
+        target.share = share;
+        target.isCrease = rule == Sdc::Crease::RULE_CREASE;
+        for (float s : sharpness) target.isSharp.push_back(s > 0.0f);
+        if (share == 0.0) return;
+        if (IsSmooth(rule)) {
+            for (double& a : wheel.edgeWeights) a += share * (scheme == Sdc::SCHEME_LOOP ? GetLoopWeight(k) : 1.0 / square);
+            if (scheme == Sdc::SCHEME_CATMARK) wheel.faceWeight += share / square;
+        } else if (target.isCrease) {
+            int ends[2];
+            creasing.GetSharpEdgePairOfCrease(sharpness.data(), numSpokes, ends);
+            for (int end : ends) wheel.edgeWeights[static_cast<size_t>(end)] += share * 0.125;
+        }
+    };
+    add(wheel.parent, parent, before, t);
+    add(wheel.child, child, after, 1.0 - t);
+    return wheel;
+}
+
 /// What is read of a level to make the next one's stencils.
 class FormStencilBuilder {
 public:
@@ -103,15 +163,13 @@ public:
         return {_s1.Get(), _s2.Get()};
     }
 
-    Wheel FindWheel(Index vertex) const;
-
 private:
     WheelRows const& GetRows(Index vertex);
     bool IsSmoothAndRegular(Index vertex) const;
     void AddVertex(Index vertex);
     void AddCentralChild(Index face);
     void AddEdgesToCentre(Index face);
-    double FindFaceShare(Index edge) const;
+    double FindShare(Index edge) const { return FindFaceShare(_scheme, _coarse, &_fine, edge); }
 
     /// Writes a row over the wheel of which _wheelEdges tells the edges.
     void EmitEdgeRow(WheelRows::Row const& row, Index from, Index to, Index fineEdge) {
@@ -133,15 +191,6 @@ private:
     std::vector<double> _mu;                            // Loop: per corner of the faces
 };
 
-/// p or q: what the edge's rule gives to each side beyond its ends.
-double FormStencilBuilder::FindFaceShare(Index edge) const {
-    double const smooth = _scheme == Sdc::SCHEME_LOOP ? 0.125 : 0.25;
-    float const sharpness = _coarse.GetEdgeSharpness(edge);
-    if (sharpness <= 0.0f) return smooth;
-    if (_fine.GetVertexRule(_coarse.GetEdgeChildVertex(edge)) == Sdc::Crease::RULE_CREASE) return 0.0;
-    return smooth * static_cast<double>(1.0f - sharpness);
-}
-
 bool FormStencilBuilder::IsSmoothAndRegular(Index vertex) const {
     if (_coarse.GetVertexRule(vertex) != Sdc::Crease::RULE_SMOOTH || _coarse.IsVertexBoundary(vertex)) return false;
     for (Index edge : _coarse.GetVertexEdges(vertex)) {
@@ -152,55 +201,9 @@ bool FormStencilBuilder::IsSmoothAndRegular(Index vertex) const {
     return std::all_of(faces.begin(), faces.end(), [&](Index face) { return _coarse.GetFaceVertices(face).size() == size; });
 }
 
-Wheel FormStencilBuilder::FindWheel(Index vertex) const {
-    auto const faces = _coarse.GetVertexFaces(vertex);
-    auto const edges = _coarse.GetVertexEdges(vertex);
-    size_t const numSpokes = static_cast<size_t>(edges.size());
-    Wheel wheel;
-    wheel.isInterior = edges.size() == faces.size();
-    for (Index face : faces) wheel.sizes.push_back(_coarse.GetFaceVertices(face).size());
-
-    // Sharpness before and after, and the two rules between which OpenSubdiv blends.
-    Index const child = _coarse.GetVertexChildVertex(vertex);
-    std::vector<float> before, after;
-    for (Index edge : edges) {
-        wheel.faceShares.push_back(FindFaceShare(edge));
-        before.push_back(_coarse.GetEdgeSharpness(edge));
-        after.push_back(_fine.GetEdgeSharpness(_coarse.GetEdgeChildEdges(edge)[_coarse.GetEdgeVertices(edge)[0] == vertex ? 0 : 1]));
-    }
-    Rule const parent = _coarse.GetVertexRule(vertex), next = _fine.GetVertexRule(child);
-    double t = 1.0;
-    if (parent != next && !IsSmooth(parent)) {
-        t = static_cast<double>(Sdc::Crease(_refiner.GetSchemeOptions())
-                                    .ComputeFractionalWeightAtVertex(_coarse.GetVertexSharpness(vertex), _fine.GetVertexSharpness(child),
-                                                                     static_cast<int>(numSpokes), before.data(), after.data()));
-    }
-
-    wheel.edgeWeights.assign(numSpokes, 0.0);
-    int const k = wheel.GetNumFaces();
-    double const square = static_cast<double>(numSpokes) * static_cast<double>(numSpokes);
-    auto const add = [&](Wheel::Rule& target, Rule rule, std::vector<float> const& sharpness, double share) {
-        target.share = share;
-        target.isCrease = rule == Sdc::Crease::RULE_CREASE;
-        for (float s : sharpness) target.isSharp.push_back(s > 0.0f);
-        if (share == 0.0) return;
-        if (IsSmooth(rule)) {
-            for (double& a : wheel.edgeWeights) a += share * (_scheme == Sdc::SCHEME_LOOP ? GetLoopWeight(k) : 1.0 / square);
-            if (_scheme == Sdc::SCHEME_CATMARK) wheel.faceWeight += share / square;
-        } else if (target.isCrease) {
-            int ends[2];
-            Sdc::Crease(_refiner.GetSchemeOptions()).GetSharpEdgePairOfCrease(sharpness.data(), static_cast<int>(numSpokes), ends);
-            for (int end : ends) wheel.edgeWeights[static_cast<size_t>(end)] += share * 0.125;
-        }
-    };
-    add(wheel.parent, parent, before, t);
-    add(wheel.child, next, after, 1.0 - t);
-    return wheel;
-}
-
 WheelRows const& FormStencilBuilder::GetRows(Index vertex) {
     size_t const k = static_cast<size_t>(_coarse.GetVertexFaces(vertex).size());
-    if (!IsSmoothAndRegular(vertex)) return _rows = MakeWheelRows(_scheme, FindWheel(vertex));
+    if (!IsSmoothAndRegular(vertex)) return _rows = MakeWheelRows(_scheme, FindWheel(_refiner, _coarse, &_fine, vertex));
     if (_smoothRows.size() <= k) _smoothRows.resize(k + 1);
     auto& known = _smoothRows[k];
     if (!known) known = MakeWheelRows(_scheme, MakeSmoothWheel(_scheme, static_cast<int>(k)));
@@ -243,7 +246,7 @@ void FormStencilBuilder::AddCentralChild(Index face) {
     double own = 1.0;
     auto const edges = _coarse.GetFaceEdges(face);
     for (int j = 0; j < 3; ++j) {
-        double const p = FindFaceShare(edges[j]);
+        double const p = FindShare(edges[j]);
         own -= 0.5 * p + _mu[3 * static_cast<size_t>(face) + static_cast<size_t>(j)];
         if (p == 0.0) continue;
         auto const faces = _coarse.GetEdgeFaces(edges[j]);
@@ -258,7 +261,7 @@ void FormStencilBuilder::AddEdgesToCentre(Index face) {
     Index const centre = _coarse.GetFaceChildVertex(face);
     auto const edges = _coarse.GetFaceEdges(face);
     for (int j = 0; j < edges.size(); ++j) {
-        double const q = FindFaceShare(edges[j]);
+        double const q = FindShare(edges[j]);
         double const sign = _coarse.GetEdgeChildVertex(edges[j]) < centre ? 1.0 : -1.0;
         auto const addPath = [&](Index f, int from, double weight) {
             int const size = _coarse.GetFaceVertices(f).size();
@@ -297,8 +300,8 @@ SparseRows Multiply(SparseRows const& a, SparseRows const& b, Index numColumns) 
 
 FormStencils BuildFormStencils(Far::TopologyRefiner const& refiner, int level) { return FormStencilBuilder(refiner, level).Build(); }
 
-Wheel FindWheel(Far::TopologyRefiner const& refiner, int level, Index vertex) {
-    return FormStencilBuilder(refiner, level + 1).FindWheel(vertex);
+Wheel FindLimitWheel(Far::TopologyRefiner const& refiner, int level, Index vertex) {
+    return FindWheel(refiner, refiner.GetLevel(level), nullptr, vertex);
 }
 
 FormStencils ComposeFormStencils(Far::TopologyRefiner const& refiner, int level) {

@@ -27,10 +27,10 @@ struct FormStencils {
 /// \throws Error   TooLarge: more than 2^31 entries, or a vertex with more than 4096 faces (named)
 FormStencils BuildFormStencils(Far::TopologyRefiner const& refiner, int level);
 
-/// The wheel of a vertex of `level`, which has a refined level after it.
+/// The wheel of a vertex of `level`, with sharpness that stays as it is: that of the limit, where none fades any more.
 ///
 /// \pre  the vertex has faces
-Wheel FindWheel(Far::TopologyRefiner const& refiner, int level, Index vertex);
+Wheel FindLimitWheel(Far::TopologyRefiner const& refiner, int level, Index vertex);
 
 /// All steps up to `level` in one table each: over the edges and faces of the base.
 ///

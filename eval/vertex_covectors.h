@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opensubdiv/far/topologyRefiner.h>
+
+#include "far_ext/types.h"
+
+namespace limn::eval {
+
+/// The limit of a 1-form at a vertex, on a pair of tangents of the limit surface: w(T_a) and the T_a themselves, from
+/// the control points. Tangents and values share a scale that drops out of the vector they make.
+struct VertexCovector {
+    std::array<Eigen::Vector3d, 2> tangents;
+    std::array<double, 2> values{};
+
+    /// V = sum_ab (g^-1)_ab w(T_b) T_a, the tangent vector that w stands for; 0 where the tangents span no plane.
+    Eigen::Vector3d GetVector() const;
+    /// T_0 x T_1, of length 1 or 0: the limit normal.
+    Eigen::Vector3d GetNormal() const;
+};
+
+/// Limits at the vertices of one level.
+///
+/// Exact      at interior vertices, on boundaries and infinitely sharp creases (the side of the first fan) up to 3
+///            triangles or 2 quads per fan, at corners. Semi-sharp features count as sharp: refine until they have faded.
+///            Larger boundary fans, and single quads on a smooth boundary, have no limit: the value is that of the mask.
+/// \param form       per edge of the level
+/// \param positions  3 per vertex of the level
+/// \pre    faces are all quads (Catmull-Clark) or triangles (Loop); CheckForms has passed
+/// Source  [Wang06] Sec. 4.4; forms.md 7.2
+class VertexCovectors {
+public:
+    VertexCovectors(Far::TopologyRefiner const& refiner, int level) : _refiner(refiner), _index(level), _level(refiner.GetLevel(level)) {}
+
+    VertexCovector Find(Index vertex, std::span<double const> form, std::span<double const> positions) const;
+
+private:
+    Far::TopologyRefiner const& _refiner;
+    int _index;
+    Far::TopologyLevel _level;
+};
+
+}  // namespace limn::eval
