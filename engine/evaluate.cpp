@@ -1,9 +1,9 @@
 #include "engine/evaluate.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include <fmt/format.h>
 #include <opensubdiv/bfr/parameterization.h>
@@ -11,7 +11,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
-#include "engine/io/file.h"
+#include "engine/io/number_table.h"
 #include "engine/job.h"
 #include "eval/surface_sample.h"
 #include "far_ext/error.h"
@@ -21,28 +21,6 @@ namespace limn::engine {
 namespace Bfr = OpenSubdiv::Bfr;
 
 namespace {
-
-std::string_view Trim(std::string_view text) {
-    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-    while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.remove_suffix(1);
-    return text;
-}
-
-std::vector<std::string_view> SplitAtCommas(std::string_view line) {
-    std::vector<std::string_view> fields;
-    for (size_t start = 0; start <= line.size();) {
-        size_t const comma = std::min(line.find(',', start), line.size());
-        fields.push_back(Trim(line.substr(start, comma - start)));
-        start = comma + 1;
-    }
-    return fields;
-}
-
-template <class Number>
-bool ParseField(std::string_view field, Number& value) {
-    auto const [stop, code] = std::from_chars(field.data(), field.data() + field.size(), value);
-    return code == std::errc() && stop == field.data() + field.size();
-}
 
 class PlaceMapper {
 public:
@@ -88,46 +66,14 @@ private:
 }  // namespace
 
 PlaceList ReadPlaces(std::string const& path) {
-    InputFile const file(path);
-    std::string_view rest = file.GetBytes();
+    NumberTable table = ReadNumberTable(path, {{"face", "s", "t"}});
     PlaceList places;
-    size_t lineNumber = 0;
-    constexpr char const* kColumns[3] = {"face", "s", "t"};
-    int columns[3] = {-1, -1, -1};
-    auto const refuse = [&](std::string const& message) {
-        throw Error(ErrorCode::BadMesh, fmt::format("{}:{}: {}", path, lineNumber, message));
-    };
-    while (!rest.empty()) {
-        size_t const end = std::min(rest.find('\n'), rest.size());
-        std::string_view const line = Trim(rest.substr(0, end));
-        rest.remove_prefix(std::min(end + 1, rest.size()));
-        ++lineNumber;
-        if (line.empty()) continue;
-        auto const fields = SplitAtCommas(line);
-        if (columns[0] < 0) {
-            for (size_t i = 0; i < fields.size(); ++i) {
-                for (int k = 0; k < 3; ++k) {
-                    if (fields[i] == kColumns[k]) columns[k] = static_cast<int>(i);
-                }
-            }
-            if (columns[0] < 0 || columns[1] < 0 || columns[2] < 0) refuse("the header needs the columns face,s,t");
-            continue;
-        }
-        auto const field = [&](int k) {
-            size_t const i = static_cast<size_t>(columns[k]);
-            return i < fields.size() ? fields[i] : std::string_view();
-        };
-        Index face = 0;
-        double s = 0.0, t = 0.0;
-        if (!ParseField(field(0), face) || !ParseField(field(1), s) || !ParseField(field(2), t)) {
-            refuse("a row needs an integer face and two numbers s and t");
-        }
-        places.faces.push_back(face);
-        places.s.push_back(s);
-        places.t.push_back(t);
-        places.lines.push_back(lineNumber);
+    for (size_t row = 0; row < table.GetNumRows(); ++row) {
+        places.faces.push_back(GetIndex(table, path, row, 0, std::numeric_limits<int>::max(), "face"));
+        places.s.push_back(table.Get(row, 1));
+        places.t.push_back(table.Get(row, 2));
     }
-    if (columns[0] < 0) refuse("the file is empty; a header face,s,t is needed");
+    places.lines = std::move(table.lines);
     return places;
 }
 

@@ -34,6 +34,7 @@ struct Scene {
 
     far_ext::ControlMesh cage;      ///< fvar channel 0 holds the UVs where there are any
     std::vector<double> positions;  ///< 3 per vertex
+    std::vector<double> normals;    ///< 3 per vertex, written to OBJ; empty without. Readers leave them out: limits have their own
     std::vector<double> uvs;        ///< 2 per value of fvar channel 0; empty without UVs
     std::array<FaceGroups, 3> groups;  ///< by GroupKind
     std::vector<Primvar> primvars;

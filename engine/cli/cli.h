@@ -80,6 +80,7 @@ Verb AddEval(CLI::App& app);
 Verb AddBake(CLI::App& app);
 Verb AddBands(CLI::App& app);
 Verb AddDenoise(CLI::App& app);
+Verb AddField(CLI::App& app);
 Verb AddFit(CLI::App& app);
 Verb AddMeasure(CLI::App& app);
 Verb AddMorph(CLI::App& app);

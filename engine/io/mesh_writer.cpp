@@ -31,6 +31,7 @@ public:
     std::string Make() {
         AppendRows("v", _scene.positions, 3);
         AppendRows("vt", _scene.uvs, 2);
+        AppendRows("vn", _scene.normals, 3);
         AppendFaces();
         AppendTags();
         return fmt::to_string(_text);
@@ -66,6 +67,9 @@ private:
                 fmt::format_to(std::back_inserter(_text), " {}", cage.faceVertices[corner] + 1);
                 if (_scene.HasUVs()) {
                     fmt::format_to(std::back_inserter(_text), "/{}", cage.fvarChannels[0].valueIndices[corner] + 1);
+                }
+                if (!_scene.normals.empty()) {
+                    fmt::format_to(std::back_inserter(_text), "{}/{}", _scene.HasUVs() ? "" : "/", cage.faceVertices[corner] + 1);
                 }
             }
             _text.push_back('\n');
@@ -194,7 +198,10 @@ void WriteMesh(std::string const& path, Scene const& scene, bool isDouble, std::
 }
 
 void MeshSequence::Add(std::string const& path, Scene const& scene, std::vector<std::string>* warnings) {
-    std::string const bytes = FormatMesh(path, scene, _isDouble, warnings);
+    Add(path, FormatMesh(path, scene, _isDouble, warnings));
+}
+
+void MeshSequence::Add(std::string const& path, std::string const& bytes) {
     _files.push_back(std::make_unique<AtomicFile>(path));
     _files.back()->Write(bytes);
     _paths.push_back(path);

@@ -1,0 +1,44 @@
+#include "engine/io/edge_values.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "engine/io/number_table.h"
+#include "far_ext/error.h"
+#include "far_ext/form_operators.h"
+
+namespace limn::engine {
+
+std::vector<double> ReadEdgeValues(std::string const& path, Far::TopologyLevel const& level) {
+    NumberTable const table = ReadNumberTable(path, {{"v0", "v1", "value"}});
+    std::vector<double> form(static_cast<size_t>(level.GetNumEdges()), 0.0);
+    std::vector<size_t> lineOfEdge(form.size(), 0);
+    for (size_t row = 0; row < table.GetNumRows(); ++row) {
+        int const count = level.GetNumVertices();
+        Index const from = GetIndex(table, path, row, 0, count, "vertex"), to = GetIndex(table, path, row, 1, count, "vertex");
+        Index const edge = level.FindEdge(from, to);
+        if (edge == Far::INDEX_INVALID) {
+            throw Error(ErrorCode::BadMesh, fmt::format("{}:{}: there is no edge from vertex {} to {}", path, table.lines[row], from, to));
+        }
+        if (lineOfEdge[edge] > 0) {
+            throw Error(ErrorCode::BadMesh, fmt::format("{}:{}: the edge from vertex {} to {} comes twice, first in line {}", path, table.lines[row], from, to,
+                                                        lineOfEdge[edge]));
+        }
+        lineOfEdge[edge] = table.lines[row];
+        form[edge] = far_ext::GetSignFrom(level, edge, from) * table.Get(row, 2);
+    }
+    return form;
+}
+
+std::string FormatEdgeValues(Far::TopologyLevel const& level, std::span<double const> form) {
+    std::string text = "v0,v1,value\n";
+    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+        auto const ends = level.GetEdgeVertices(edge);
+        fmt::format_to(std::back_inserter(text), "{},{},{}\n", std::min(ends[0], ends[1]), std::max(ends[0], ends[1]), form[edge]);
+    }
+    return text;
+}
+
+}  // namespace limn::engine

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include <opensubdiv/far/topologyLevel.h>
+
+#include "far_ext/types.h"
+
+namespace limn::engine {
+
+/// A 1-form from a table `v0,v1,value`: what a field does along the edges from v0 to v1; 0 on edges that are not listed.
+///
+/// \return per edge of the level, in the direction of far_ext/form_operators.h
+/// \throws Error  BadMesh: an edge that does not exist or comes twice (file and line named).  Io
+std::vector<double> ReadEdgeValues(std::string const& path, Far::TopologyLevel const& level);
+
+/// The same table of a 1-form, all edges, each from its lower vertex; numbers read back the same.
+std::string FormatEdgeValues(Far::TopologyLevel const& level, std::span<double const> form);
+
+}  // namespace limn::engine
