@@ -1,5 +1,6 @@
 #include "eval/vertex_covectors.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -119,62 +120,105 @@ Eigen::Vector3d VertexCovector::GetVector() const {
     return ((g * values[0] - f * values[1]) * tangents[0] + (e * values[1] - f * values[0]) * tangents[1]) / determinant;
 }
 
+/// forms.md 7.2: w(T) = sum t(w_i) w(sp_i) + (quads: paths to far corners) + sum h_j (d1 w)(f_j), h = r (lambda - s)^-1.
+VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel const& wheel) {
+    bool const isLoop = scheme == Sdc::SCHEME_LOOP;
+    int const numSides = isLoop ? 3 : 4;
+    far_ext::WheelRows const local = far_ext::MakeWheelRows(scheme, wheel);
+    Eigen::Index const k = wheel.GetNumFaces();
+    size_t const numSpokes = static_cast<size_t>(wheel.GetNumSpokes());
+    auto const chain = [&](std::vector<double> const& x) { return Eigen::Map<Eigen::VectorXd const>(x.data(), k); };
+    Eigen::MatrixXd shares(k, k);
+    for (Eigen::Index j = 0; j < k; ++j) shares.row(j) = chain(local.share[static_cast<size_t>(j)]).transpose();
+
+    auto const masks = MakeMasks(isLoop, wheel);
+    Rows rows;
+    for (size_t a = 0; a < 2; ++a) {
+        TangentMask const& mask = masks[a];
+        Row& row = rows[a];
+        row.vertex = mask.vertex;
+        row.ends = mask.ends;
+        row.corners = mask.corners;
+        row.edges.assign(static_cast<size_t>(wheel.GetFirstOuterSide(static_cast<int>(k))), 0.0);
+        auto const addSide = [&](Eigen::Index face, int m, double weight) {
+            if (m == 0) row.edges[static_cast<size_t>(face)] += weight;
+            else if (m == numSides - 1) row.edges[(static_cast<size_t>(face) + 1) % numSpokes] -= weight;
+            else row.edges[numSpokes + static_cast<size_t>(face * (numSides - 2) + m - 1)] += weight;
+        };
+        Eigen::VectorXd residue = Eigen::VectorXd::Zero(k);
+        for (size_t i = 0; i < numSpokes; ++i) {
+            double const t = mask.ends[i];
+            if (t == 0.0) continue;
+            row.edges[i] += t;
+            residue += t * chain(local.flow[i]);
+            if (isLoop || wheel.faceShares[i] == 0.0) continue;
+            double const q = t * wheel.faceShares[i] / 8.0;
+            residue[static_cast<Eigen::Index>(i)] += q;
+            residue[(static_cast<Eigen::Index>(i) + k - 1) % k] -= q;
+        }
+        for (Eigen::Index j = 0; !isLoop && j < k; ++j) {
+            double const t = mask.corners[static_cast<size_t>(j)];
+            if (t == 0.0) continue;
+            for (int m = 0; m < 4; ++m) addSide(j, m, m < 2 ? 0.5 * t : -0.5 * t);  // the mean of both ways round
+            residue += 0.5 * t * (chain(local.flow[static_cast<size_t>(j)]) + chain(local.flow[(static_cast<size_t>(j) + 1) % numSpokes]));
+        }
+        if (residue.isZero(0.0)) continue;
+        Eigen::MatrixXd const system = (mask.eigenvalue * Eigen::MatrixXd::Identity(k, k) - shares).transpose();
+        Eigen::VectorXd const h = system.partialPivLu().solve(residue);
+        for (Eigen::Index j = 0; j < k; ++j) {
+            for (int m = 0; m < numSides; ++m) addSide(j, m, h[j]);
+        }
+    }
+    return rows;
+}
+
+VertexCovectors::VertexCovectors(Far::TopologyRefiner const& refiner, int level) : _refiner(refiner), _index(level), _level(refiner.GetLevel(level)) {
+    for (Index vertex = 0; vertex < _level.GetNumVertices(); ++vertex) {
+        size_t const k = static_cast<size_t>(_level.GetVertexFaces(vertex).size());
+        if (k == 0 || !IsPlain(vertex)) continue;
+        if (_plainRows.size() <= k) _plainRows.resize(k + 1);
+        if (!_plainRows[k]) _plainRows[k] = MakeRows(refiner.GetSchemeType(), far_ext::MakeSmoothWheel(refiner.GetSchemeType(), static_cast<int>(k)));
+    }
+}
+
+bool VertexCovectors::IsPlain(Index vertex) const {
+    if (_level.GetVertexRule(vertex) != Sdc::Crease::RULE_SMOOTH || _level.IsVertexBoundary(vertex)) return false;
+    auto const edges = _level.GetVertexEdges(vertex);
+    return std::all_of(edges.begin(), edges.end(), [&](Index edge) { return _level.GetEdgeSharpness(edge) <= 0.0f; });
+}
+
 VertexCovector VertexCovectors::Find(Index vertex, std::span<double const> form, std::span<double const> positions) const {
-    bool const isLoop = _refiner.GetSchemeType() == Sdc::SCHEME_LOOP;
+    int const numSides = _refiner.GetSchemeType() == Sdc::SCHEME_LOOP ? 3 : 4;
     auto const faces = _level.GetVertexFaces(vertex);
     auto const corners = _level.GetVertexFaceLocalIndices(vertex);
     auto const edges = _level.GetVertexEdges(vertex);
     VertexCovector result{{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}, {}};
     if (faces.size() == 0) return result;
-    Wheel const wheel = far_ext::FindLimitWheel(_refiner, _index, vertex);
-    far_ext::WheelRows const rows = far_ext::MakeWheelRows(_refiner.GetSchemeType(), wheel);
-    Eigen::Index const k = faces.size();
-    auto const chain = [&](std::vector<double> const& x) { return Eigen::Map<Eigen::VectorXd const>(x.data(), k); };
+    Rows own;
+    bool const isPlain = IsPlain(vertex);
+    if (!isPlain) own = MakeRows(_refiner.GetSchemeType(), far_ext::FindLimitWheel(_refiner, _index, vertex));
+    Rows const& rows = isPlain ? *_plainRows[static_cast<size_t>(faces.size())] : own;
 
     auto const at = [&](Index v) { return Eigen::Map<Eigen::Vector3d const>(&positions[3 * static_cast<size_t>(v)]); };
-    auto const side = [&](Eigen::Index face, int m) {
-        int const size = _level.GetFaceVertices(faces[static_cast<int>(face)]).size();
-        auto const oriented = far_ext::GetFaceSide(_level, faces[static_cast<int>(face)], (corners[static_cast<int>(face)] + m) % size);
-        return oriented.sign * form[oriented.edge];
-    };
-    Eigen::VectorXd curl(k);
-    Eigen::MatrixXd shares(k, k);
-    for (Eigen::Index j = 0; j < k; ++j) {
-        curl[j] = 0.0;
-        for (int m = 0; m < (isLoop ? 3 : 4); ++m) curl[j] += side(j, m);
-        shares.row(j) = chain(rows.share[static_cast<size_t>(j)]).transpose();
+    for (size_t a = 0; a < 2; ++a) result.tangents[a] = rows[a].vertex * at(vertex);
+    for (int i = 0; i < edges.size(); ++i) {
+        auto const ends = _level.GetEdgeVertices(edges[i]);
+        Eigen::Vector3d const end = at(ends[0] == vertex ? ends[1] : ends[0]);
+        double const value = far_ext::GetSignFrom(_level, edges[i], vertex) * form[edges[i]];
+        for (size_t a = 0; a < 2; ++a) {
+            result.tangents[a] += rows[a].ends[static_cast<size_t>(i)] * end;
+            result.values[a] += rows[a].edges[static_cast<size_t>(i)] * value;
+        }
     }
-    auto const masks = MakeMasks(isLoop, wheel);
-    size_t const numSpokes = static_cast<size_t>(wheel.GetNumSpokes());
-    for (size_t a = 0; a < 2; ++a) {
-        TangentMask const& mask = masks[a];
-        Eigen::VectorXd residue = Eigen::VectorXd::Zero(k);
-        result.tangents[a] = mask.vertex * at(vertex);
-        for (size_t i = 0; i < numSpokes; ++i) {
-            double const t = mask.ends[i];
-            if (t == 0.0) continue;
-            Index const edge = edges[static_cast<int>(i)];
-            auto const ends = _level.GetEdgeVertices(edge);
-            result.tangents[a] += t * at(ends[0] == vertex ? ends[1] : ends[0]);
-            result.values[a] += t * far_ext::GetSignFrom(_level, edge, vertex) * form[edge];
-            residue += t * chain(rows.flow[i]);
-            if (!isLoop && wheel.faceShares[i] != 0.0) {
-                double const q = t * wheel.faceShares[i] / 8.0;
-                residue[static_cast<Eigen::Index>(i)] += q;
-                residue[(static_cast<Eigen::Index>(i) + k - 1) % k] -= q;
-            }
+    size_t place = static_cast<size_t>(edges.size());
+    for (int j = 0; j < faces.size(); ++j) {
+        for (int m = 1; m < numSides - 1; ++m, ++place) {
+            auto const side = far_ext::GetFaceSide(_level, faces[j], (corners[j] + m) % numSides);
+            for (size_t a = 0; a < 2; ++a) result.values[a] += rows[a].edges[place] * side.sign * form[side.edge];
         }
-        for (Eigen::Index j = 0; !isLoop && j < k; ++j) {
-            double const t = mask.corners[static_cast<size_t>(j)];
-            if (t == 0.0) continue;
-            Index const corner = _level.GetFaceVertices(faces[static_cast<int>(j)])[(corners[static_cast<int>(j)] + 2) % 4];
-            result.tangents[a] += t * at(corner);
-            result.values[a] += t * 0.5 * (side(j, 0) + side(j, 1) - side(j, 2) - side(j, 3));
-            residue += 0.5 * t * (chain(rows.flow[static_cast<size_t>(j)]) + chain(rows.flow[(static_cast<size_t>(j) + 1) % numSpokes]));
-        }
-        if (residue.isZero(0.0)) continue;
-        Eigen::MatrixXd const system = (mask.eigenvalue * Eigen::MatrixXd::Identity(k, k) - shares).transpose();
-        result.values[a] += system.partialPivLu().solve(residue).dot(curl);
+        if (numSides == 3) continue;
+        Eigen::Vector3d const corner = at(_level.GetFaceVertices(faces[j])[(corners[j] + 2) % 4]);
+        for (size_t a = 0; a < 2; ++a) result.tangents[a] += rows[a].corners[static_cast<size_t>(j)] * corner;
     }
     return result;
 }

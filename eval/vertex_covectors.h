@@ -1,13 +1,14 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include <Eigen/Core>
 #include <opensubdiv/far/topologyRefiner.h>
 
-#include "far_ext/types.h"
+#include "far_ext/form_wheel.h"
 
 namespace limn::eval {
 
@@ -28,20 +29,33 @@ struct VertexCovector {
 /// Exact      at interior vertices, on boundaries and infinitely sharp creases (the side of the first fan) up to 3
 ///            triangles or 2 quads per fan, at corners. Semi-sharp features count as sharp: refine until they have faded.
 ///            Larger boundary fans, and single quads on a smooth boundary, have no limit: the value is that of the mask.
+/// Threads    immutable; Find may run on many.
 /// \param form       per edge of the level
 /// \param positions  3 per vertex of the level
 /// \pre    faces are all quads (Catmull-Clark) or triangles (Loop); CheckForms has passed
 /// Source  [Wang06] Sec. 4.4; forms.md 7.2
 class VertexCovectors {
 public:
-    VertexCovectors(Far::TopologyRefiner const& refiner, int level) : _refiner(refiner), _index(level), _level(refiner.GetLevel(level)) {}
+    VertexCovectors(Far::TopologyRefiner const& refiner, int level);
 
     VertexCovector Find(Index vertex, std::span<double const> form, std::span<double const> positions) const;
 
 private:
+    /// The weights behind T and w(T) at a vertex.
+    struct Row {
+        double vertex = 0.0;
+        std::vector<double> ends, corners;  ///< of T: ends of the spokes, far corners of quads
+        std::vector<double> edges;          ///< of w(T): the wheel's edges, spokes outwards first
+    };
+    using Rows = std::array<Row, 2>;
+
+    bool IsPlain(Index vertex) const;
+    static Rows MakeRows(Sdc::SchemeType scheme, far_ext::Wheel const& wheel);
+
     Far::TopologyRefiner const& _refiner;
     int _index;
     Far::TopologyLevel _level;
+    std::vector<std::optional<Rows>> _plainRows;  // of smooth interior vertices, by valence
 };
 
 }  // namespace limn::eval

@@ -19,6 +19,8 @@ struct BakeOptions {
     std::string pattern;           ///< output path with {map}, {mesh}, <UDIM> or {udim}
     MapOptions maps;
     NoiseOptions noise;            ///< of the map 'noise'
+    std::vector<double> field;     ///< of the map 'field': a 1-form, per edge of the control mesh
+    std::string fieldHash;         ///< SHA-256 of what it was read from
     int width = 2048, height = 2048;
     std::vector<int> tiles;        ///< UDIM numbers; empty for all
     int samplesPerSide = 1;        ///< N x N per texel

@@ -29,6 +29,8 @@ struct BandBaker::Worker {
     std::vector<std::array<double, 4>> jacobians;
     std::optional<SurfaceNoise::Sampler> noise;
     std::vector<double> noiseValues, noiseBlock;  // of all hits, of a block of samples
+    std::optional<eval::FieldSurface::Sampler> field;
+    std::vector<Eigen::Vector3d> fieldValues, fieldBlock;
     std::vector<float> samplePlanes, lineSums;
     TexelBand sampleTexels;
 
@@ -37,6 +39,7 @@ struct BandBaker::Worker {
           sampler(tree, baker._quantity, baker._options.isLeftHanded ? -1.0f : 1.0f),
           raster(*baker._uvSurface, baker._scene.uvs) {
         if (baker._noise) noise.emplace(*baker._noise);
+        if (baker._field) field.emplace(*baker._field);
     }
 };
 
@@ -53,6 +56,15 @@ void Scatter(std::span<int const> places, float const* from, float* to) {
         else for (size_t k = 0; k < kGroup; ++k) to[places[i + k]] = from[i + k];
     }
     for (; i < places.size(); ++i) to[places[i]] = from[i];
+}
+
+/// So deep that a refined face is about 4 texels wide, or that there are 4 million.
+int ChooseFieldLevels(Scene const& scene, BakeOptions const& options) {
+    double const numFaces = std::max<double>(1.0, scene.cage.GetNumFaces());
+    double const texels = static_cast<double>(options.width) * options.height;
+    int levels = 0;
+    while (levels < 8 && numFaces * std::pow(4.0, levels) * 16.0 < texels && numFaces * std::pow(4.0, levels + 1) < 4e6) ++levels;
+    return levels;
 }
 
 }  // namespace
@@ -124,6 +136,9 @@ BandBaker::BandBaker(Scene const& scene, Far::TopologyRefiner const& refiner, Sc
         _values.push_back({_frequencyBands, GetNumBandChannels(options.maps)});
     }
     if (has(MapKind::Noise)) _noise = std::make_unique<SurfaceNoise>(scene, options.noise);
+    if (has(MapKind::Field)) {
+        _field = std::make_unique<eval::FieldSurface>(scene.cage, scene.positions, options.field, ChooseFieldLevels(scene, options));
+    }
 
     _bounds.resize(_isBaked.size());
     tbb::parallel_for(tbb::blocked_range<Index>(0, GetNumFaces(), 512), [&](auto const& range) {
@@ -302,6 +317,10 @@ void BandBaker::EvaluateHits(Worker& worker, Index face, int domain, TexelHits c
         worker.noiseValues.resize(hits.s.size());
         worker.noise->Evaluate(face, domain, hits.s, hits.t, worker.noiseValues);
     }
+    if (_field) {
+        worker.fieldValues.resize(hits.s.size());
+        worker.field->Evaluate(face, domain, hits.s, hits.t, worker.fieldValues);
+    }
     worker.sampler.Evaluate(domain, hits.s, hits.t, [&](std::span<int const> samples, float const* values, size_t stride) {
         worker.places.resize(samples.size());
         for (size_t i = 0; i < samples.size(); ++i) worker.places[i] = hits.texel[samples[i]];
@@ -312,11 +331,13 @@ void BandBaker::EvaluateHits(Worker& worker, Index face, int domain, TexelHits c
             }
         }
         worker.noiseBlock.clear();
+        worker.fieldBlock.clear();
         for (int sample : samples) {
             if (_noise) worker.noiseBlock.push_back(worker.noiseValues[sample]);
+            if (_field) worker.fieldBlock.push_back(worker.fieldValues[sample]);
         }
         MapSamples const block{_quantity, values, stride, samples.size(), worker.jacobians, _meanArea, worker.noiseBlock,
-                               _noise ? _noise->GetLow() : 0.0, _noise ? _noise->GetHigh() : 0.0};
+                               _noise ? _noise->GetLow() : 0.0, _noise ? _noise->GetHigh() : 0.0, worker.fieldBlock};
         float* plane = planes;
         for (Map const& map : _maps) {
             size_t const numChannels = static_cast<size_t>(map.GetNumChannels());

@@ -11,6 +11,7 @@
 #include "engine/bake/layout.h"
 #include "engine/bake/uv_raster.h"
 #include "engine/noise/surface_noise.h"
+#include "eval/field_surface.h"
 #include "eval/surface_sampler.h"
 
 namespace limn::engine {
@@ -88,7 +89,8 @@ private:
     std::vector<double> _primvarValues, _frequencyBands;
     std::vector<eval::FaceTree::Values> _values;
     std::unique_ptr<eval::LimitSurface> _surface, _uvSurface;
-    std::unique_ptr<SurfaceNoise> _noise;  // null where no map shows it
+    std::unique_ptr<SurfaceNoise> _noise;       // null where no map shows it
+    std::unique_ptr<eval::FieldSurface> _field;  // likewise
     std::vector<char> _isBaked;
     std::vector<UVBounds> _bounds;
     double _meanArea = 1.0;  // surface area per texture area

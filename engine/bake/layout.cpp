@@ -88,6 +88,10 @@ std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, S
                             options.noise.frequency, options.noise.gain, options.noise.seed, options.maps.isNormalized,
                             options.maps.ramp ? options.maps.ramp->GetText() : "none");
     }
+    if (has(MapKind::Field)) {
+        text += fmt::format(" field={} flow={} normalize={}", options.fieldHash, options.maps.space == MapSpace::UV ? "uv" : "object",
+                            options.maps.isNormalized);
+    }
     if (has(MapKind::Displacement) || has(MapKind::Bands)) {
         text += fmt::format(" vector={} space={}", options.maps.isVector,
                             options.maps.space == MapSpace::Tangent ? "tangent" : "object");

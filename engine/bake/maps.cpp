@@ -44,6 +44,7 @@ std::vector<MapRow> const& GetTable() {
         {"stretch", MapKind::Stretch, y, Averaging::Plain, true, "log2", Quantity::Tangents},
         {"bands", MapKind::Bands, {}, Averaging::Plain, true, "length", Quantity::Normal},
         {"noise", MapKind::Noise, y, Averaging::Plain, true, "amplitude", Quantity::Position},
+        {"field", MapKind::Field, rgb, Averaging::Plain, true, "as the form per length", Quantity::Position},
     };
     return table;
 }
@@ -72,6 +73,20 @@ Map MakePrimvarMap(std::string const& name, Scene const& scene) {
     for (Primvar const& primvar : scene.primvars) known += (known.empty() ? "" : ", ") + primvar.name;
     throw Error(ErrorCode::BadOption, fmt::format("--maps: '{}' has no primvar '{}'; it has: {}", scene.path,
                                                   wanted, known.empty() ? "none" : known));
+}
+
+/// Vectors in object space, or the flow in texture coordinates.
+void ChooseFieldChannels(MapOptions const& options, Map& map) {
+    if (!options.hasField) throw Error(ErrorCode::BadOption, "--maps field needs --field EDGES.csv, as limn field writes it");
+    if (options.space == MapSpace::Tangent) throw Error(ErrorCode::BadOption, "--maps field: use --space object or uv; its vectors are tangents already");
+    if (options.isNormalized) {
+        map.averaging = Averaging::UnitVector;
+        map.units = "unit vector";
+    }
+    if (options.space != MapSpace::UV) return;
+    map.channels = {"R", "G"};
+    map.quantity = Quantity::Tangents;
+    if (!options.isNormalized) map.units = "texture coordinates per unit of time";
 }
 
 }  // namespace
@@ -120,6 +135,9 @@ std::vector<Map> MakeMaps(MapOptions const& options, Scene const& scene) {
             map.units = options.ramp ? "colour" : "share of the range";
             if (options.ramp) map.channels = {"R", "G", "B"};
         }
+        if (map.kind == MapKind::Field) ChooseFieldChannels(options, map);
+        else if (options.space == MapSpace::UV) throw Error(ErrorCode::BadOption, fmt::format("--space uv is for the map field alone, not for '{}'", name));
+        map.zero = options.hasEncoding ? static_cast<float>(options.encodeOffset) : 0.0f;
         maps.push_back(std::move(map));
     }
     if (maps.empty()) throw Error(ErrorCode::BadOption, fmt::format("--maps: choose from {}", ListNames()));
@@ -134,6 +152,7 @@ eval::Quantity FindQuantity(std::span<Map const> maps) {
 
 bool NeedsJacobian(Map const& map, MapOptions const& options) {
     bool const isDisplacement = map.kind == MapKind::Displacement || map.kind == MapKind::Bands;
+    if (map.kind == MapKind::Field) return options.space == MapSpace::UV;
     return map.kind == MapKind::Stretch || (isDisplacement && options.isVector && options.space == MapSpace::Tangent);
 }
 
@@ -252,6 +271,27 @@ void EvaluateNoise(MapOptions const& options, MapSamples const& samples, float* 
     }
 }
 
+/// d(u,v) along a tangent vector a P_s + b P_t.
+Eigen::Vector2d FindFlow(MapSamples const& samples, size_t i) {
+    Eigen::Vector3d const ds = GetVector(samples, eval::kTangentSX, i), dt = GetVector(samples, eval::kTangentTX, i);
+    Eigen::Vector3d const& v = samples.field[i];
+    double const e = ds.squaredNorm(), f = ds.dot(dt), g = dt.squaredNorm(), determinant = e * g - f * f;
+    if (!(determinant > 1e-14 * e * g)) return Eigen::Vector2d::Zero();
+    double const a = (g * ds.dot(v) - f * dt.dot(v)) / determinant, b = (e * dt.dot(v) - f * ds.dot(v)) / determinant;
+    auto const& [us, ut, vs, vt] = samples.jacobians[i];
+    return {us * a + ut * b, vs * a + vt * b};
+}
+
+void EvaluateField(MapOptions const& options, MapSamples const& samples, float* out, size_t outStride) {
+    for (size_t i = 0; i < samples.count; ++i) {
+        Eigen::Vector3d vector = samples.field[i];
+        if (options.space == MapSpace::UV) vector << FindFlow(samples, i), 0.0;
+        double const length = vector.norm();
+        if (options.isNormalized && length > 0.0) vector /= length;
+        for (int c = 0; c < (options.space == MapSpace::UV ? 2 : 3); ++c) out[static_cast<size_t>(c) * outStride + i] = static_cast<float>(vector[c]);
+    }
+}
+
 }  // namespace
 
 void EvaluateMap(Map const& map, MapOptions const& options, MapSamples const& samples, float* out, size_t outStride) {
@@ -302,6 +342,7 @@ void EvaluateMap(Map const& map, MapOptions const& options, MapSamples const& sa
             break;
         case MapKind::Bands: EvaluateBands(map, options, samples, out, outStride); break;
         case MapKind::Noise: EvaluateNoise(options, samples, out, outStride); break;
+        case MapKind::Field: EvaluateField(options, samples, out, outStride); break;
     }
     if (options.hasEncoding) {
         auto const scale = static_cast<float>(options.encodeScale);

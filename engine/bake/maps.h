@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "engine/bake/uv_raster.h"
 #include "engine/noise/colour_ramp.h"
 #include "engine/scene.h"
@@ -14,13 +16,13 @@ namespace limn::engine {
 
 enum class MapKind {
     Mean, Gaussian, K1, K2, Curvedness, ShapeIndex, Curvature, PrincipalDirection, Position, Normal,
-    Displacement, Stretch, Primvar, Noise, Bands
+    Displacement, Stretch, Primvar, Noise, Bands, Field
 };
 
 /// How texels of a map are averaged (supersampling, mip levels): plainly, or as what they are.
 enum class Averaging { Plain, UnitVector, Line };
 
-enum class MapSpace { Object, Tangent };
+enum class MapSpace { Object, Tangent, UV };
 
 /// One map of a bake: what is measured, and the channels it fills (bake.md, "Maps").
 struct Map {
@@ -32,6 +34,7 @@ struct Map {
     std::string units;
     eval::Quantity quantity;            ///< what it needs of the surface
     int extraChannel = 0;               ///< of the tree's values: where a primvar, the other mesh or the bands start
+    float zero = 0.0f;                  ///< what 0 is written as: the offset of --encode
 
     int GetNumChannels() const { return static_cast<int>(channels.size()); }
 };
@@ -44,7 +47,8 @@ struct MapOptions {
     int numBands = 4;                  ///< --bands: of the map 'bands', its smooth base included
     bool hasEncoding = false;
     double encodeScale = 1.0, encodeOffset = 0.0;
-    bool isNormalized = false;         ///< --normalize: noise from 0 to 1
+    bool isNormalized = false;         ///< --normalize: noise from 0 to 1, a field of length 1
+    bool hasField = false;             ///< --field was given
     std::optional<ColourRamp> ramp;    ///< --noise-ramp: noise as colours
 };
 
@@ -57,7 +61,7 @@ eval::Quantity FindQuantity(std::span<Map const> maps);
 /// Number of the tree's channels that the bands take: three for each but the base, and the remainder's.
 int GetNumBandChannels(MapOptions const& options);
 
-/// True where a map needs d(u,v)/d(s,t): tangent space and stretch.
+/// True where a map needs d(u,v)/d(s,t): tangent space, flow in texture space and stretch.
 bool NeedsJacobian(Map const& map, MapOptions const& options);
 
 /// A block of samples with everything that maps are made of.
@@ -69,6 +73,7 @@ struct MapSamples {
     double meanArea;                ///< surface area per texture area over the whole mesh (stretch)
     std::span<double const> noise;  ///< per sample; empty unless a map shows it
     double noiseLow, noiseHigh;     ///< its range over the whole surface
+    std::span<Eigen::Vector3d const> field;  ///< per sample; empty unless a map shows it
 };
 
 /// Computes one map's channels for a block of samples: out[c * outStride + i].

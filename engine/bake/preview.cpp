@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/bake/line_convolution.h"
 #include "engine/images/images_module.h"
 #include "engine/io/file.h"
 #include "far_ext/error.h"
@@ -123,7 +124,27 @@ void PreviewBuilder::Add(int row, TexelRowView const& texels) {
     }
 }
 
+PreviewBuilder::Picture PreviewBuilder::DrawFlow() const {
+    size_t const numTexels = _weights.size();
+    std::vector<float> flow(2 * numTexels, 0.0f);
+    std::vector<uint8_t> isInside(numTexels, 0);
+    for (size_t texel = 0; texel < numTexels; ++texel) {
+        if (!(_weights[texel] > 0.0f)) continue;
+        isInside[texel] = 1;
+        // Texture coordinates to texels, v upwards.
+        flow[2 * texel] = (_sums[texel] / _weights[texel] - _map.zero) * static_cast<float>(_width);
+        flow[2 * texel + 1] = -(_sums[numTexels + texel] / _weights[texel] - _map.zero) * static_cast<float>(_height);
+    }
+    std::vector<uint8_t> const grey = ConvolveLines(_width, _height, flow, isInside);
+    Picture picture;
+    picture.width = _width;
+    picture.height = _height;
+    for (uint8_t value : grey) picture.pixels.insert(picture.pixels.end(), 3, value);
+    return picture;
+}
+
 PreviewBuilder::Picture PreviewBuilder::Draw() const {
+    if (_map.kind == MapKind::Field && _map.GetNumChannels() == 2) return DrawFlow();
     size_t const numTexels = _weights.size();
     int const numChannels = _map.GetNumChannels();
     // A vector map shows its three components as colours; anything else its first channel.

@@ -23,9 +23,12 @@ public:
         int width = 0, height = 0;
         std::vector<uint8_t> pixels;
     };
+    /// A field in texture space is drawn as streaks along it.
     Picture Draw() const;
 
 private:
+    Picture DrawFlow() const;
+
     Map _map;
     int _firstChannel, _factor, _width, _height, _sourceWidth;
     std::vector<float> _sums;    // [channel][texel]

@@ -93,6 +93,7 @@ std::vector<SeamAudit> AuditSeams(AuditInput const& input) {
             std::vector<std::string> const channels(begin, begin + map.GetNumChannels());
             first += channels.size();
             if (map.averaging == Averaging::Line) continue;  // a line has no sign to compare
+            if (map.kind == MapKind::Field && map.GetNumChannels() == 2) continue;  // each side has its own coordinates
             audits.push_back(AuditSeamsOf(input, map, channels, found->second));
         }
     }

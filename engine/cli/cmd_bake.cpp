@@ -5,8 +5,10 @@
 #include "engine/bake/audit.h"
 #include "engine/bake/bake.h"
 #include "engine/cli/cli.h"
+#include "engine/io/edge_values.h"
 #include "engine/options_text.h"
 #include "far_ext/error.h"
+#include "far_ext/form_operators.h"
 
 namespace limn::cli {
 
@@ -14,7 +16,7 @@ namespace {
 
 struct Arguments {
     std::vector<std::string> meshes;
-    std::string pattern, size = "2048", compression = "zip", against, space = "object", encode;
+    std::string pattern, size = "2048", compression = "zip", against, fieldPath, space = "object", encode;
     std::vector<std::string> maps, tiles, groups;
     int samples = 1, padding = 16;
     bool isHalf = false, hasMips = false, hasCoverage = false, hasPreview = false, isVector = false,
@@ -70,7 +72,9 @@ engine::BakeOptions MakeOptions(Arguments const& a, CommonOptions const& common)
     options.pattern = a.pattern;
     options.maps.names = a.maps;
     options.maps.isVector = a.isVector;
-    options.maps.space = a.space == "tangent" ? engine::MapSpace::Tangent : engine::MapSpace::Object;
+    if (a.space == "tangent") options.maps.space = engine::MapSpace::Tangent;
+    if (a.space == "uv") options.maps.space = engine::MapSpace::UV;
+    options.maps.hasField = !a.fieldPath.empty();
     options.maps.hasOtherMesh = !a.against.empty();
     if (!a.encode.empty()) {
         size_t const comma = a.encode.find(',');
@@ -142,7 +146,7 @@ nlohmann::json ToJson(engine::AuditReport const& audit, engine::BakeReport const
 }
 
 int Run(Arguments const& a, Context& context) {
-    engine::BakeOptions const options = MakeOptions(a, context.GetCommon());
+    engine::BakeOptions options = MakeOptions(a, context.GetCommon());
     if (a.meshes.size() > 1 && a.pattern.find("{mesh}") == std::string::npos) {
         throw Error(ErrorCode::BadOption, "-o: several meshes need {mesh} in the output's name");
     }
@@ -152,6 +156,11 @@ int Run(Arguments const& a, Context& context) {
     int status = kDone;
     for (std::string const& path : a.meshes) {
         auto const [scene, refiner] = context.Load(path);
+        if (!a.fieldPath.empty()) {
+            far_ext::CheckForms(*refiner);
+            options.field = engine::ReadEdgeValues(a.fieldPath, refiner->GetLevel(0));
+            options.fieldHash = engine::Sha256OfFile(a.fieldPath);
+        }
         Context::Mesh other;
         if (!a.against.empty()) other = context.Load(a.against);
         auto const report = engine::Bake(scene, *refiner, a.against.empty() ? nullptr : &other.scene, options,
@@ -176,7 +185,7 @@ Verb AddBake(CLI::App& app) {
     verb->add_option("-o,--output", a->pattern, "output path with {map}, {mesh}, <UDIM> or {udim}")->required();
     verb->add_option("--maps", a->maps,
                      "comma-separated: mean, gaussian, k1, k2, curvedness, shape-index, curvature, principal-direction, "
-                     "position, normal, displacement, stretch, noise, bands, primvar:NAME")
+                     "position, normal, displacement, stretch, noise, bands, field, primvar:NAME")
         ->delimiter(',')
         ->required();
     verb->add_option("--size", a->size, "texels: N or WxH (default 2048)");
@@ -193,8 +202,9 @@ Verb AddBake(CLI::App& app) {
     verb->add_option("--bands", a->numBands, "of the map bands: frequency bands, their smooth base included (default 4)")
         ->check(CLI::Range(1, 64));
     verb->add_flag("--vector", a->isVector, "displacement and bands as vectors");
-    verb->add_option("--space", a->space, "object (default) or tangent, of vectors")
-        ->check(CLI::IsMember({"object", "tangent"}));
+    verb->add_option("--space", a->space, "object (default) or tangent, of vectors; uv: of the map field, flow in texture coordinates")
+        ->check(CLI::IsMember({"object", "tangent", "uv"}));
+    verb->add_option("--field", a->fieldPath, "CSV v0,v1,value of MESH's edges, for the map field (limn field -o x.edges.csv)");
     verb->add_option("--noise-octaves", a->noise.octaves, "levels of refinement with noise each (default 4)")->check(CLI::Range(1, 10));
     verb->add_option("--noise-frequency", a->noise.frequency,
                      "noise cells per unit length in the first octave (default: half a cell per mean edge)")
@@ -202,7 +212,7 @@ Verb AddBake(CLI::App& app) {
     verb->add_option("--noise-gain", a->noise.gain, "amplitude from octave to octave (default 0.5)")->check(CLI::Range(0.0, 16.0));
     verb->add_option("--noise-seed", a->noise.seed, "another noise for every number (default 0)");
     verb->add_option("--noise-ramp", a->noiseRamp, "noise as colours: '#rrggbb,#rrggbb,...' from low to high, equally spaced");
-    verb->add_flag("--normalize", a->isNormalized, "noise from 0 to 1 over the whole surface");
+    verb->add_flag("--normalize", a->isNormalized, "noise from 0 to 1 over the whole surface; fields of length 1");
     verb->add_flag("--audit", a->hasAudit, "check seams, coverage and Gauss-Bonnet, and report them");
     verb->add_option("--audit-bound", a->auditBound, "of the Gauss-Bonnet error (default 1e-3); missed: exit status 4");
     verb->add_option("--groups", a->groups, "only faces of these usemtl, g or o groups")->delimiter(',');

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "eval/limit_surface.h"
+#include "eval/refined_faces.h"
+#include "far_ext/control_mesh.h"
+
+namespace limn::eval {
+
+/// The tangent vector field of a subdivided 1-form at any place of the limit surface: V = sum g^ab w(x_a) x_b with the
+/// limit's own tangents.
+///
+/// Exact    in regular quads: w is (quadratic B-splines along) x (cubic ones across) the edges round the face.
+/// Else     next to extraordinary vertices, boundaries and creases, and on triangles: the exact vectors at the refined
+///          face's corners, blended and projected on the tangent plane. The error falls four times per level.
+/// Threads  immutable once built; a Sampler per thread.
+/// Source   [Wang06] Sec. 4 and 5; forms.md 4 (regular quads), 7
+class FieldSurface {
+public:
+    /// \param refiner    unrefined topology of the cage
+    /// \param positions  3 per vertex of the cage
+    /// \param form       per edge of the cage
+    /// \param levels     refinements; 1 is done at least where faces are not all quads (Loop: triangles)
+    /// \throws Error     as far_ext::CheckForms; TooLarge: 2^31 indices
+    FieldSurface(far_ext::ControlMesh const& cage, std::span<double const> positions, std::span<double const> form, int levels);
+
+    class Sampler {
+    public:
+        explicit Sampler(FieldSurface const& field);
+
+        /// \param face     of the cage, with a limit; \param domain as in LimitSurface
+        /// \param vectors  one per place; 0 where the surface has no tangent plane
+        void Evaluate(Index face, int domain, std::span<double const> s, std::span<double const> t, std::span<Eigen::Vector3d> vectors);
+
+    private:
+        struct Place {
+            RefinedFaces::Place at;
+            size_t sample;
+        };
+
+        void Bind(Index face);
+        Eigen::Vector3d EvaluateHere(RefinedFaces::Place const& place);
+
+        FieldSurface const& _field;
+        FaceTree _tree;
+        std::vector<Place> _places;
+        bool _isRegular = false;
+        double _alongS[3][4], _alongT[4][3];  // of a regular face: [i][j] values of edges along s and along t
+    };
+
+private:
+    bool GatherEdges(Index face, double alongS[3][4], double alongT[4][3]) const;
+
+    far_ext::ControlMesh _cage;  // refined
+    std::vector<double> _positions, _form;
+    std::unique_ptr<Far::TopologyRefiner> _refiner;  // of the refined cage
+    std::unique_ptr<LimitSurface> _surface;
+    std::unique_ptr<RefinedFaces> _faces;
+    std::vector<Eigen::Vector3d> _vectors;  // at its vertices
+};
+
+}  // namespace limn::eval
