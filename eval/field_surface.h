@@ -1,14 +1,15 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "eval/limit_surface.h"
+#include "eval/quad_form_patch.h"
 #include "eval/refined_faces.h"
+#include "eval/triangle_form_patch.h"
 #include "far_ext/control_mesh.h"
 
 namespace limn::eval {
@@ -16,9 +17,9 @@ namespace limn::eval {
 /// The tangent vector field of a subdivided 1-form at any place of the limit surface: V = sum g^ab w(x_a) x_b with the
 /// limit's own tangents.
 ///
-/// Exact    in regular quads: w is (quadratic B-splines along) x (cubic ones across) the edges round the face.
-/// Else     next to extraordinary vertices, boundaries and creases, and on triangles: the exact vectors at the refined
-///          face's corners, blended and projected on the tangent plane. The error falls four times per level.
+/// Exact    in regular faces, by QuadFormPatch and TriangleFormPatch.
+/// Else     next to extraordinary vertices, boundaries and creases: the exact vectors at the refined face's corners,
+///          blended and projected on the tangent plane.
 /// Threads  immutable once built; a Sampler per thread.
 /// Source   [Wang06] Sec. 4 and 5; forms.md 4 (regular quads), 7
 class FieldSurface {
@@ -51,12 +52,11 @@ public:
         FaceTree _tree;
         std::vector<Place> _places;
         bool _isRegular = false;
-        double _alongS[3][4], _alongT[4][3];  // of a regular face: [i][j] values of edges along s and along t
+        QuadFormPatch _quad;          // one of these is of the
+        TriangleFormPatch _triangle;  // bound face, if it is regular
     };
 
 private:
-    bool GatherEdges(Index face, double alongS[3][4], double alongT[4][3]) const;
-
     far_ext::ControlMesh _cage;  // refined
     std::vector<double> _positions, _form;
     std::unique_ptr<Far::TopologyRefiner> _refiner;  // of the refined cage

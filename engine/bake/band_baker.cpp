@@ -58,12 +58,12 @@ void Scatter(std::span<int const> places, float const* from, float* to) {
     for (; i < places.size(); ++i) to[places[i]] = from[i];
 }
 
-/// So deep that a refined face is about 4 texels wide, or that there are 4 million.
+/// So deep that a refined face is 1 to 2 texels wide, or that there are a million.
 int ChooseFieldLevels(Scene const& scene, BakeOptions const& options) {
     double const numFaces = std::max<double>(1.0, scene.cage.GetNumFaces());
     double const texels = static_cast<double>(options.width) * options.height;
     int levels = 0;
-    while (levels < 8 && numFaces * std::pow(4.0, levels) * 16.0 < texels && numFaces * std::pow(4.0, levels + 1) < 4e6) ++levels;
+    while (levels < 8 && 4.0 * numFaces * std::pow(4.0, levels) < texels && numFaces * std::pow(4.0, levels + 1) < 1e6) ++levels;
     return levels;
 }
 
