@@ -59,6 +59,26 @@ public:
         WritePng(path, preview.Draw());
     }
 
+    /// Draws an arrow round each of some vertices that are seen, no two nearer than `spacing` pixels.
+    void DrawArrows(std::vector<std::array<double, 3>> const& vectors, double spacing) {
+        double longest = 0.0;
+        for (auto const& vector : vectors) longest = std::max(longest, Vector(vector.data()).norm());
+        std::vector<char> isTaken(NumPixels(), 0);
+        int const reach = static_cast<int>(spacing);
+        for (Index vertex = 0; vertex < _scene.cage.numVertices; ++vertex) {
+            Vector const direction(vectors[static_cast<size_t>(vertex)].data()), place = Project(vertex);
+            int const x = static_cast<int>(place.x()), y = static_cast<int>(place.y());
+            if (!(direction.norm() > 1e-6 * longest) || !IsSeen(place, 2.0 / _scale) || isTaken[At(x, y)]) continue;
+            for (int dy = -reach; dy <= reach; ++dy) {
+                for (int dx = -reach; dx <= reach; ++dx) {
+                    if (IsInside(x + dx, y + dy) && dx * dx + dy * dy < spacing * spacing) isTaken[At(x + dx, y + dy)] = 1;
+                }
+            }
+            Vector const flat = direction.normalized();
+            DrawArrow({place.x(), place.y()}, 0.8 * spacing * Eigen::Vector2d(flat.dot(_right), -flat.dot(_up)));
+        }
+    }
+
     Vector const& GetDirectionToEye() const { return _toEye; }
     double GetScale() const { return _scale; }  ///< pixels per unit of length
     Vector GetUp() const { return _up; }
@@ -82,6 +102,34 @@ private:
         Vector const p = PointOf(vertex);
         double const x = p.dot(_right) - _centre.x(), y = p.dot(_up) - _centre.y();
         return {0.5 * _size + _scale * x, 0.5 * _size - _scale * y, p.dot(_toEye)};
+    }
+
+    bool IsInside(int x, int y) const { return x >= 0 && y >= 0 && x < _size && y < _size; }
+    size_t At(int x, int y) const { return static_cast<size_t>(y) * static_cast<size_t>(_size) + static_cast<size_t>(x); }
+
+    bool IsSeen(Vector const& place, double slack) const {
+        int const x = static_cast<int>(place.x()), y = static_cast<int>(place.y());
+        return IsInside(x, y) && place.z() > _depth[At(x, y)] - slack;
+    }
+
+    /// A black line, two pixels wide, over what is covered already.
+    void DrawLine(Eigen::Vector2d const& from, Eigen::Vector2d const& step) {
+        int const count = static_cast<int>(std::ceil(2.0 * step.norm()));
+        for (int i = 0; i <= count; ++i) {
+            Eigen::Vector2d const p = from + step * i / std::max(1, count);
+            for (int corner = 0; corner < 4; ++corner) {
+                int const x = static_cast<int>(std::floor(p.x() - 0.5)) + corner % 2, y = static_cast<int>(std::floor(p.y() - 0.5)) + corner / 2;
+                if (IsInside(x, y) && _coverage[At(x, y)] > 0.0f) _values[At(x, y)] = 0.0f;
+            }
+        }
+    }
+
+    /// Round its middle, with a head of two barbs.
+    void DrawArrow(Eigen::Vector2d const& middle, Eigen::Vector2d const& step) {
+        Eigen::Vector2d const tip = middle + 0.5 * step, aside(-step.y(), step.x());
+        DrawLine(middle - 0.5 * step, step);
+        DrawLine(tip, -0.35 * step + 0.2 * aside);
+        DrawLine(tip, -0.35 * step - 0.2 * aside);
     }
 
     void DrawTriangle(std::array<Index, 3> const& corners, Shade const& shade) {
@@ -149,6 +197,19 @@ void WriteHighlightPicture(std::string const& path, Scene const& scene, PictureV
         double const wave = std::cos(2.0 * std::acos(-1.0) * kStripes * height);
         return std::clamp(0.5 + 2.0 * wave, 0.0, 1.0);
     });
+    picture.Write(path, false);
+}
+
+void WriteArrowPicture(std::string const& path, Scene const& scene, std::vector<std::array<double, 3>> const& vectors, PictureView const& view) {
+    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    auto const normals = eval::FindAngleNormals(refiner->GetLevel(0), scene.positions);
+    MeshPicture picture(scene, view);
+    picture.Draw([&](Vector const& weights, std::array<Index, 3> const& corners) {
+        Vector normal = Vector::Zero();
+        for (int k = 0; k < 3; ++k) normal += weights[k] * Vector(&normals[3 * static_cast<size_t>(corners[static_cast<size_t>(k)])]);
+        return 0.4 + 0.6 * std::abs(normal.normalized().dot(picture.GetDirectionToEye()));
+    });
+    picture.DrawArrows(vectors, view.size / 32.0);
     picture.Write(path, false);
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "engine/scene.h"
 
@@ -25,5 +26,12 @@ void WriteValuePicture(std::string const& path, Scene const& scene, std::string 
 /// \throws Error  as above
 /// Source  [Zhu11] Sec. 4.3 and Fig. 13
 void WriteHighlightPicture(std::string const& path, Scene const& scene, PictureView const& view);
+
+/// Draws a mesh, brighter where it faces the eye, with arrows of one length on it, spread evenly over the picture, along tangent vectors, and
+/// writes it as PNG. No arrow stands where the vector is below 1e-6 of the longest.
+///
+/// \param vectors  per vertex
+/// \throws Error   as above
+void WriteArrowPicture(std::string const& path, Scene const& scene, std::vector<std::array<double, 3>> const& vectors, PictureView const& view);
 
 }  // namespace limn::engine

@@ -8,6 +8,7 @@
 #include <Eigen/SparseCholesky>
 
 #include "eval/tree_cotree.h"
+#include "far_ext/error.h"
 #include "far_ext/form_operators.h"
 
 namespace limn::eval {
@@ -42,6 +43,10 @@ public:
         Matrix matrix(count, count);
         matrix.setFromTriplets(kept.begin(), kept.end());
         _solver.compute(matrix);
+        if (_solver.info() != Eigen::Success) {
+            throw Error(ErrorCode::BadMesh, "the equations of this mesh have no solution in double precision: its edges or angles "
+                                            "differ by too many orders of magnitude");
+        }
     }
 
     std::vector<double> Solve(std::span<double const> right) {
@@ -164,13 +169,18 @@ std::vector<double> FieldDesigner::MakeVortex(std::span<double const> vortices) 
         }
         _faces = std::make_unique<Factorisation>(isFixed, entries);
     }
-    std::vector<double> const psi = _faces->Solve(vortices);
-    std::vector<double> form(static_cast<size_t>(_level.GetNumEdges()), 0.0);
-    for (Index face = 0; face < _level.GetNumFaces(); ++face) {
-        for (int k = _d1.offsets[face]; k < _d1.offsets[face + 1]; ++k) {
-            Index const edge = _d1.indices[k];
-            if (!_isEmptyEdge[edge]) form[edge] += _d1.weights[k] * psi[face] / _stars.edge[edge];
+    std::vector<double> form(static_cast<size_t>(_level.GetNumEdges()), 0.0), missing(vortices.begin(), vortices.end());
+    for (int step = 0; step < 2; ++step) {  // the second one gives back the digits that large values of psi took
+        std::vector<double> const psi = _faces->Solve(missing);
+        for (Index face = 0; face < _level.GetNumFaces(); ++face) {
+            for (int k = _d1.offsets[face]; k < _d1.offsets[face + 1]; ++k) {
+                Index const edge = _d1.indices[k];
+                if (!_isEmptyEdge[edge]) form[edge] += _d1.weights[k] * psi[face] / _stars.edge[edge];
+            }
         }
+        if (step > 0) break;
+        std::vector<double> const curl = FindCurl(form);
+        for (size_t face = 0; face < missing.size(); ++face) missing[face] -= curl[face];
     }
     return form;
 }

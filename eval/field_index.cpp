@@ -6,7 +6,15 @@ namespace limn::eval {
 
 FieldIndices FindFieldIndices(Far::TopologyLevel const& level, std::span<double const> form) {
     FieldIndices result;
-    auto const isAlong = [&](far_ext::OrientedEdge side) { return (form[side.edge] >= 0.0) == (side.sign > 0.0); };
+    std::vector<char> isPositive(form.size());
+    for (size_t edge = 0; edge < form.size(); ++edge) isPositive[edge] = form[edge] >= 0.0;
+    for (Index face = 0; face < level.GetNumFaces(); ++face) {
+        for (int j = 0; j < level.GetFaceEdges(face).size(); ++j) {
+            auto const side = far_ext::GetFaceSide(level, face, j);
+            if (form[side.edge] == 0.0 && level.GetEdgeFaces(side.edge).size() == 1) isPositive[side.edge] = side.sign > 0.0;
+        }
+    }
+    auto const isAlong = [&](far_ext::OrientedEdge side) { return (isPositive[side.edge] != 0) == (side.sign > 0.0); };
     auto const add = [&](bool isFace, Index element, double index) {
         if (index != 0.0) result.singularities.push_back({isFace, element, index});
         result.sum += index;

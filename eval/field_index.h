@@ -23,7 +23,8 @@ struct FieldIndices {
     double sum = 0.0;                             ///< the Euler characteristic, by the theorem of Poincare and Hopf
 };
 
-/// \param form  per edge; 0 counts as positive, so that every edge has a direction
+/// \param form  per edge; 0 counts as positive, on boundary edges as their face runs, so that every edge has a direction and
+///              a field straight across a boundary is not singular there
 /// Source  Gortler, Gotsman, Thurston 2006 (discrete one-forms on meshes); forms.md 8
 FieldIndices FindFieldIndices(Far::TopologyLevel const& level, std::span<double const> form);
 

@@ -8,6 +8,7 @@
 #include "engine/io/edge_values.h"
 #include "engine/io/mesh_writer.h"
 #include "engine/io/number_table.h"
+#include "engine/mesh_picture.h"
 #include "far_ext/error.h"
 #include "far_ext/form_operators.h"
 
@@ -16,7 +17,8 @@ namespace limn::cli {
 namespace {
 
 struct Arguments {
-    std::string mesh, output, edgesPath, matchPath, harmonics, atBoundary = "tangent";
+    std::string mesh, output, edgesPath, matchPath, harmonics, picture, atBoundary = "tangent";
+    std::vector<double> view{1.0, 0.6, 0.8};
     std::vector<std::string> sources, sinks, vortices;
     int levels = 0;
     bool isBalanced = false;
@@ -121,7 +123,7 @@ int Run(Arguments const& a, Context& context) {
     far_ext::CheckForms(*mesh.refiner);
     engine::FieldAudit audit;
     auto options = MakeOptions(a, mesh.refiner->GetLevel(0));
-    options.hasVertexVectors = output == Output::Mesh;
+    options.hasVertexVectors = output == Output::Mesh || !a.picture.empty();
     auto const field = engine::DesignField(mesh.scene, *mesh.refiner, options, audit);
     AddToReport(context.GetReport(), audit);
 
@@ -136,6 +138,7 @@ int Run(Arguments const& a, Context& context) {
     } else {
         files.Add(a.output, FormatVectors("face", field.faceVectors, isDouble));
     }
+    if (!a.picture.empty()) engine::WriteArrowPicture(a.picture, field.mesh, field.vectors, {{a.view[0], a.view[1], a.view[2]}});
     files.Commit();
     for (std::string const& warning : warnings) context.GetJob().Warn(warning);
     return kDone;
@@ -163,6 +166,8 @@ Verb AddField(CLI::App& app) {
     verb->add_option("--at-boundary", a->atBoundary, "tangent (default): the field runs along boundaries; normal: into them")
         ->check(CLI::IsMember({"tangent", "normal"}));
     verb->add_flag("--balance", a->isBalanced, "spread what strengths do not add up to evenly over their component");
+    auto* const picture = verb->add_option("--picture", a->picture, "also write a PNG: arrows along the field, on the mesh");
+    verb->add_option("--view", a->view, "the picture's side that is seen, x,y,z (default 1,0.6,0.8)")->delimiter(',')->expected(3)->needs(picture);
     verb->footer("Example:\n  limn field scenes/spot/spot.obj -o out/spot.field.obj --levels 2 --source 0 --sink 1000 --vortex 40 --vortex 900:-1");
     return {verb, [a](Context& context) { return Run(*a, context); }};
 }

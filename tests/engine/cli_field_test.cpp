@@ -133,6 +133,17 @@ TEST_F(CliField, WhatIsWrongIsNamed) {
     ExpectError(Limn({"field", cube, "-o", folder / "f.txt", "--vortex", "1"}), 2);
 }
 
+// A field from the outer boundary straight to the inner one vanishes nowhere.
+TEST_F(CliField, AFieldAcrossBoundariesIsNotSingularThere) {
+    ASSERT_EQ(Limn({"field", grid, "--scheme", "loop", "--at-boundary", "normal", "--harmonic", "1", "--levels", "1", "-o", folder / "x.obj", "--report",
+                    folder / "r.json", "--picture", folder / "x.png"})
+                  .status,
+              0);
+    EXPECT_TRUE(Report()["singularities"].empty());
+    EXPECT_EQ(Report()["sum_of_indices"], 0.0);
+    EXPECT_EQ(test::ReadText(folder / "x.png").substr(1, 3), "PNG");
+}
+
 class CliFieldBake : public CliField {
 protected:
     std::vector<double> Look(std::string const& file, std::vector<std::string> const& channels, int x, int y) { return _lookup.Look(folder / file, channels, x, y); }
