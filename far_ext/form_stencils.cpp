@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <map>
+#include <memory>
+#include <utility>
 
 #include <Eigen/SparseCore>
 #include <fmt/format.h>
@@ -20,68 +22,83 @@ using Rule = Sdc::Crease::Rule;
 
 bool IsSmooth(Rule rule) { return rule == Sdc::Crease::RULE_SMOOTH || rule == Sdc::Crease::RULE_DART; }
 
-/// Rows that come in any order, put in order at the end.
-class RowCollector {
+/// Rows of known sizes, filled in any order.
+class RowWriter {
 public:
-    explicit RowCollector(Index numRows) : _places(static_cast<size_t>(numRows)) {}
+    explicit RowWriter(Index numRows) { _rows.offsets.assign(static_cast<size_t>(numRows) + 1, 0); }
 
-    /// Adds an entry to the row that EndRow will close.
-    void Add(Index column, double weight) { _entries.push_back({column, weight}); }
+    void SetSize(Index row, size_t size) { _rows.offsets[static_cast<size_t>(row) + 1] = static_cast<int>(size); }
 
-    void EndRow(Index row) {
-        MergeRepeated();
-        _places[row] = {_begin, static_cast<int>(_entries.size() - _begin)};
-        _begin = _entries.size();
+    /// \throws Error  TooLarge: more than 2^31 entries
+    void Allocate() {
+        size_t total = 0;
+        for (size_t row = 1; row < _rows.offsets.size(); ++row) {
+            total += static_cast<size_t>(_rows.offsets[row]);
+            if (total > static_cast<size_t>(std::numeric_limits<int>::max())) {
+                throw Error(ErrorCode::TooLarge, "the stencil tables of forms pass 2^31 entries; refine fewer levels");
+            }
+            _rows.offsets[row] = static_cast<int>(total);
+        }
+        _rows.indices.resize(total);
+        _rows.weights.resize(total);
     }
 
-    SparseRows Get() const {
-        if (_entries.size() > static_cast<size_t>(std::numeric_limits<int>::max())) {
-            throw Error(ErrorCode::TooLarge, "the stencil tables of forms pass 2^31 entries; refine fewer levels");
-        }
-        SparseRows rows;
-        rows.offsets.reserve(_places.size() + 1);
-        rows.indices.resize(_entries.size());
-        rows.weights.resize(_entries.size());
-        size_t at = 0;
-        for (auto const& [begin, size] : _places) {
-            for (size_t k = begin; k < begin + static_cast<size_t>(size); ++k, ++at) {
-                rows.indices[at] = _entries[k].column;
-                rows.weights[at] = _entries[k].weight;
-            }
-            rows.offsets.push_back(static_cast<int>(at));
-        }
-        return rows;
+    void Start(Index row) { _at = static_cast<size_t>(_rows.offsets[row]); }
+    void Add(Index column, double weight) {
+        _rows.indices[_at] = column;
+        _rows.weights[_at++] = weight;
+    }
+
+    /// Adds up entries of the same column in a row: a side that two faces share (valence 2, small closed meshes) comes twice.
+    void MarkRepeated(Index row) { _repeated.push_back(row); }
+
+    SparseRows Get() {
+        if (!_repeated.empty()) Merge();
+        return std::move(_rows);
     }
 
 private:
-    struct Entry {
-        Index column;
-        double weight;
-    };
-    struct Place {
-        size_t begin = 0;
-        int size = 0;
-    };
-
-    /// A side that two faces of a wheel share (valence 2, small closed meshes) has come twice.
-    void MergeRepeated() {
-        auto const begin = _entries.begin() + static_cast<std::ptrdiff_t>(_begin);
-        std::sort(begin, _entries.end(), [](Entry const& a, Entry const& b) { return a.column < b.column; });
-        auto last = begin;
-        for (auto next = begin; next != _entries.end(); ++next) {
-            if (next == begin) continue;
-            if (next->column == last->column) last->weight += next->weight;
-            else *++last = *next;
+    void Merge() {
+        std::vector<char> isRepeated(_rows.offsets.size(), 0);
+        for (Index row : _repeated) isRepeated[row] = 1;
+        size_t to = 0;
+        for (int row = 0; row < _rows.GetNumRows(); ++row) {
+            size_t const begin = static_cast<size_t>(row == 0 ? 0 : _end), end = static_cast<size_t>(_rows.offsets[row + 1]), first = to;
+            _end = _rows.offsets[row + 1];
+            for (size_t k = begin; k < end; ++k) {
+                size_t same = first;
+                while (isRepeated[row] && same < to && _rows.indices[same] != _rows.indices[k]) ++same;
+                if (isRepeated[row] && same < to) {
+                    _rows.weights[same] += _rows.weights[k];
+                    continue;
+                }
+                _rows.indices[to] = _rows.indices[k];
+                _rows.weights[to++] = _rows.weights[k];
+            }
+            _rows.offsets[row + 1] = static_cast<int>(to);
         }
-        if (begin == _entries.end()) return;
-        auto const end = std::remove_if(begin, last + 1, [](Entry const& entry) { return std::abs(entry.weight) < 1e-15; });
-        _entries.erase(end, _entries.end());
+        _rows.indices.resize(to);
+        _rows.weights.resize(to);
     }
 
-    std::vector<Entry> _entries;
-    std::vector<Place> _places;
-    size_t _begin = 0;
+    SparseRows _rows;
+    std::vector<Index> _repeated;
+    size_t _at = 0;
+    int _end = 0;  // of the row before, where Merge reads
 };
+
+/// Everything in a wheel that its rows depend on.
+std::vector<double> MakeKey(Wheel const& wheel) {
+    std::vector<double> key{wheel.isInterior ? 1.0 : 0.0, wheel.faceWeight};
+    key.insert(key.end(), wheel.sizes.begin(), wheel.sizes.end());
+    key.insert(key.end(), wheel.faceShares.begin(), wheel.faceShares.end());
+    key.insert(key.end(), wheel.edgeWeights.begin(), wheel.edgeWeights.end());
+    for (Wheel::Rule const* rule : {&wheel.parent, &wheel.child}) {
+        key.insert(key.end(), {rule->share, rule->isCrease ? 1.0 : 0.0});
+        key.insert(key.end(), rule->isSharp.begin(), rule->isSharp.end());
+    }
+    return key;
+}
 
 /// p or q: what an edge's rule gives to each side beyond its ends.
 double FindFaceShare(Sdc::SchemeType scheme, Far::TopologyLevel const& level, Far::TopologyLevel const* next, Index edge) {
@@ -143,22 +160,33 @@ Wheel FindWheel(Far::TopologyRefiner const& refiner, Far::TopologyLevel const& l
     return wheel;
 }
 
-/// What is read of a level to make the next one's stencils.
+/// What is read of a level to make the next one's stencils. Rows are measured first and written in place; wheels that look
+/// alike share their solution.
 class FormStencilBuilder {
 public:
     FormStencilBuilder(Far::TopologyRefiner const& refiner, int level)
         : _refiner(refiner), _scheme(refiner.GetSchemeType()), _coarse(refiner.GetLevel(level - 1)), _fine(refiner.GetLevel(level)),
-          _s1(_fine.GetNumEdges()), _s2(_fine.GetNumFaces()) {}
+          _s1(_fine.GetNumEdges()), _s2(_fine.GetNumFaces()), _seen(static_cast<size_t>(_coarse.GetNumEdges()), -1) {}
 
     FormStencils Build() {
         bool const isLoop = _scheme == Sdc::SCHEME_LOOP;
         _mu.assign(isLoop ? 3 * static_cast<size_t>(_coarse.GetNumFaces()) : 0, 0.25);
+        _rowsOfVertex.assign(static_cast<size_t>(_coarse.GetNumVertices()), nullptr);
         for (Index vertex = 0; vertex < _coarse.GetNumVertices(); ++vertex) {
-            if (_coarse.GetVertexFaces(vertex).size() > 0) AddVertex(vertex);
+            if (_coarse.GetVertexFaces(vertex).size() > 0) MeasureVertex(vertex);
         }
         for (Index face = 0; face < _coarse.GetNumFaces(); ++face) {
-            if (isLoop) AddCentralChild(face);
-            else AddEdgesToCentre(face);
+            if (isLoop) MeasureCentralChild(face);
+            else MeasureEdgesToCentre(face);
+        }
+        _s1.Allocate();
+        _s2.Allocate();
+        for (Index vertex = 0; vertex < _coarse.GetNumVertices(); ++vertex) {
+            if (_rowsOfVertex[vertex]) WriteVertex(vertex, *_rowsOfVertex[vertex]);
+        }
+        for (Index face = 0; face < _coarse.GetNumFaces(); ++face) {
+            if (isLoop) WriteCentralChild(face);
+            else WriteEdgesToCentre(face);
         }
         return {_s1.Get(), _s2.Get()};
     }
@@ -166,29 +194,43 @@ public:
 private:
     WheelRows const& GetRows(Index vertex);
     bool IsSmoothAndRegular(Index vertex) const;
-    void AddVertex(Index vertex);
-    void AddCentralChild(Index face);
-    void AddEdgesToCentre(Index face);
     double FindShare(Index edge) const { return FindFaceShare(_scheme, _coarse, &_fine, edge); }
+    Index GetFineSpoke(Index vertex, Index edge) const {
+        return _coarse.GetEdgeChildEdges(edge)[_coarse.GetEdgeVertices(edge)[0] == vertex ? 0 : 1];
+    }
+    Index GetNeighbour(Index face, Index edge) const {
+        auto const faces = _coarse.GetEdgeFaces(edge);
+        return faces[0] == face ? faces[1] : faces[0];
+    }
+
+    void MeasureVertex(Index vertex);
+    void WriteVertex(Index vertex, WheelRows const& rows);
+    void MeasureCentralChild(Index face);
+    void WriteCentralChild(Index face);
+    void MeasureEdgesToCentre(Index face);
+    void WriteEdgesToCentre(Index face);
 
     /// Writes a row over the wheel of which _wheelEdges tells the edges.
-    void EmitEdgeRow(WheelRows::Row const& row, Index from, Index to, Index fineEdge) {
+    void WriteEdgeRow(WheelRows::Row const& row, Index from, Index to, Index fineEdge, bool isRepeated) {
         double const sign = from < to ? 1.0 : -1.0;
+        _s1.Start(fineEdge);
         for (auto const& [local, weight] : row) {
             OrientedEdge const& edge = _wheelEdges[static_cast<size_t>(local)];
             _s1.Add(edge.edge, sign * edge.sign * weight);
         }
-        _s1.EndRow(fineEdge);
+        if (isRepeated) _s1.MarkRepeated(fineEdge);
     }
 
     Far::TopologyRefiner const& _refiner;
     Sdc::SchemeType _scheme;
     Far::TopologyLevel _coarse, _fine;
-    RowCollector _s1, _s2;
+    RowWriter _s1, _s2;
     std::vector<OrientedEdge> _wheelEdges;
-    std::vector<std::optional<WheelRows>> _smoothRows;  // by valence
-    WheelRows _rows;                                    // of the vertex at hand, where it is not among those
-    std::vector<double> _mu;                            // Loop: per corner of the faces
+    std::vector<std::unique_ptr<WheelRows>> _smoothRows;       // by valence
+    std::map<std::vector<double>, WheelRows> _otherRows;       // by MakeKey
+    std::vector<WheelRows const*> _rowsOfVertex;
+    std::vector<double> _mu;                                   // Loop: per corner of the faces
+    std::vector<Index> _seen;                                  // per edge: the vertex whose wheel it was last found in
 };
 
 bool FormStencilBuilder::IsSmoothAndRegular(Index vertex) const {
@@ -203,14 +245,19 @@ bool FormStencilBuilder::IsSmoothAndRegular(Index vertex) const {
 
 WheelRows const& FormStencilBuilder::GetRows(Index vertex) {
     size_t const k = static_cast<size_t>(_coarse.GetVertexFaces(vertex).size());
-    if (!IsSmoothAndRegular(vertex)) return _rows = MakeWheelRows(_scheme, FindWheel(_refiner, _coarse, &_fine, vertex));
+    if (!IsSmoothAndRegular(vertex)) {
+        Wheel const wheel = FindWheel(_refiner, _coarse, &_fine, vertex);
+        auto const [found, isNew] = _otherRows.try_emplace(MakeKey(wheel));
+        if (isNew) found->second = MakeWheelRows(_scheme, wheel);
+        return found->second;
+    }
     if (_smoothRows.size() <= k) _smoothRows.resize(k + 1);
     auto& known = _smoothRows[k];
-    if (!known) known = MakeWheelRows(_scheme, MakeSmoothWheel(_scheme, static_cast<int>(k)));
+    if (!known) known = std::make_unique<WheelRows>(MakeWheelRows(_scheme, MakeSmoothWheel(_scheme, static_cast<int>(k))));
     return *known;
 }
 
-void FormStencilBuilder::AddVertex(Index vertex) {
+void FormStencilBuilder::MeasureVertex(Index vertex) {
     auto const faces = _coarse.GetVertexFaces(vertex);
     auto const corners = _coarse.GetVertexFaceLocalIndices(vertex);
     auto const edges = _coarse.GetVertexEdges(vertex);
@@ -218,66 +265,114 @@ void FormStencilBuilder::AddVertex(Index vertex) {
         throw Error(ErrorCode::TooLarge, fmt::format("vertex {} has {} faces; stencils of forms go up to 4096", vertex, faces.size()));
     }
     WheelRows const& rows = GetRows(vertex);
+    _rowsOfVertex[vertex] = &rows;
+    for (int i = 0; i < edges.size(); ++i) _s1.SetSize(GetFineSpoke(vertex, edges[i]), rows.even[static_cast<size_t>(i)].size());
+    for (int i = 0; i < faces.size(); ++i) {
+        size_t const at = static_cast<size_t>(i);
+        _s2.SetSize(_coarse.GetFaceChildFaces(faces[i])[corners[i]], rows.children[at].size());
+        if (rows.odd.empty()) continue;
+        _mu[3 * static_cast<size_t>(faces[i]) + corners[i]] = rows.mu[at];
+        _s1.SetSize(_coarse.GetFaceChildEdges(faces[i])[corners[i]], rows.odd[at].size());
+    }
+}
 
+void FormStencilBuilder::WriteVertex(Index vertex, WheelRows const& rows) {
+    auto const faces = _coarse.GetVertexFaces(vertex);
+    auto const corners = _coarse.GetVertexFaceLocalIndices(vertex);
+    auto const edges = _coarse.GetVertexEdges(vertex);
+    bool isRepeated = false;
+    auto const add = [&](OrientedEdge edge) {
+        isRepeated |= _seen[edge.edge] == vertex;
+        _seen[edge.edge] = vertex;
+        _wheelEdges.push_back(edge);
+    };
     _wheelEdges.clear();
-    for (Index edge : edges) _wheelEdges.push_back({edge, GetSignFrom(_coarse, edge, vertex)});
+    for (Index edge : edges) add({edge, GetSignFrom(_coarse, edge, vertex)});
     for (int i = 0; i < faces.size(); ++i) {
         int const size = _coarse.GetFaceVertices(faces[i]).size();
-        for (int m = 1; m < size - 1; ++m) _wheelEdges.push_back(GetFaceSide(_coarse, faces[i], (corners[i] + m) % size));
+        for (int m = 1; m < size - 1; ++m) add(GetFaceSide(_coarse, faces[i], (corners[i] + m) % size));
     }
 
     Index const child = _coarse.GetVertexChildVertex(vertex);
     for (int i = 0; i < edges.size(); ++i) {
-        Index const fineEdge = _coarse.GetEdgeChildEdges(edges[i])[_coarse.GetEdgeVertices(edges[i])[0] == vertex ? 0 : 1];
-        EmitEdgeRow(rows.even[static_cast<size_t>(i)], child, _coarse.GetEdgeChildVertex(edges[i]), fineEdge);
+        WriteEdgeRow(rows.even[static_cast<size_t>(i)], child, _coarse.GetEdgeChildVertex(edges[i]), GetFineSpoke(vertex, edges[i]), isRepeated);
     }
     for (int i = 0; i < faces.size(); ++i) {
+        Index const fineFace = _coarse.GetFaceChildFaces(faces[i])[corners[i]];
+        _s2.Start(fineFace);
         for (auto const& [local, weight] : rows.children[static_cast<size_t>(i)]) _s2.Add(faces[local], weight);
-        _s2.EndRow(_coarse.GetFaceChildFaces(faces[i])[corners[i]]);
         if (rows.odd.empty()) continue;
-        _mu[3 * static_cast<size_t>(faces[i]) + corners[i]] = rows.mu[static_cast<size_t>(i)];
-        EmitEdgeRow(rows.odd[static_cast<size_t>(i)], _coarse.GetEdgeChildVertex(edges[i]),
-                    _coarse.GetEdgeChildVertex(edges[(i + 1) % edges.size()]), _coarse.GetFaceChildEdges(faces[i])[corners[i]]);
+        WriteEdgeRow(rows.odd[static_cast<size_t>(i)], _coarse.GetEdgeChildVertex(edges[i]),
+                     _coarse.GetEdgeChildVertex(edges[(i + 1) % edges.size()]), _coarse.GetFaceChildEdges(faces[i])[corners[i]], isRepeated);
     }
 }
 
+void FormStencilBuilder::MeasureCentralChild(Index face) {
+    size_t size = 1;
+    for (Index edge : _coarse.GetFaceEdges(face)) size += FindShare(edge) != 0.0;
+    _s2.SetSize(_coarse.GetFaceChildFaces(face)[3], size);
+}
+
 /// forms.md 3.3: (1 - sum p) f + sum p g - sum of the corners' y, with the y written out.
-void FormStencilBuilder::AddCentralChild(Index face) {
-    double own = 1.0;
+void FormStencilBuilder::WriteCentralChild(Index face) {
+    Index const fineFace = _coarse.GetFaceChildFaces(face)[3];
     auto const edges = _coarse.GetFaceEdges(face);
+    double own = 1.0;
+    _s2.Start(fineFace);
+    bool isRepeated = false;
     for (int j = 0; j < 3; ++j) {
         double const p = FindShare(edges[j]);
         own -= 0.5 * p + _mu[3 * static_cast<size_t>(face) + static_cast<size_t>(j)];
         if (p == 0.0) continue;
-        auto const faces = _coarse.GetEdgeFaces(edges[j]);
-        _s2.Add(faces[0] == face ? faces[1] : faces[0], 0.5 * p);
+        Index const neighbour = GetNeighbour(face, edges[j]);
+        _s2.Add(neighbour, 0.5 * p);
+        isRepeated |= neighbour == face;
+        for (int i = 0; i < j; ++i) isRepeated |= FindShare(edges[i]) != 0.0 && GetNeighbour(face, edges[i]) == neighbour;
     }
     _s2.Add(face, own);
-    _s2.EndRow(_coarse.GetFaceChildFaces(face)[3]);
+    if (isRepeated) _s2.MarkRepeated(fineFace);
+}
+
+void FormStencilBuilder::MeasureEdgesToCentre(Index face) {
+    auto const edges = _coarse.GetFaceEdges(face);
+    auto const count = [](int size) { return static_cast<size_t>(size % 2 == 0 ? size - 2 : size - 1); };  // the side across has weight 0
+    for (int j = 0; j < edges.size(); ++j) {
+        size_t size = count(edges.size());
+        if (FindShare(edges[j]) != 0.0) size += count(_coarse.GetFaceVertices(GetNeighbour(face, edges[j])).size());
+        _s1.SetSize(_coarse.GetFaceChildEdges(face)[j], size);
+    }
 }
 
 /// forms.md 4, odd edges: from the middle of a side e to the centroid, (1 - q) F(e, f) - q F(e, g).
-void FormStencilBuilder::AddEdgesToCentre(Index face) {
+void FormStencilBuilder::WriteEdgesToCentre(Index face) {
     Index const centre = _coarse.GetFaceChildVertex(face);
     auto const edges = _coarse.GetFaceEdges(face);
     for (int j = 0; j < edges.size(); ++j) {
+        Index const fineEdge = _coarse.GetFaceChildEdges(face)[j];
         double const q = FindShare(edges[j]);
         double const sign = _coarse.GetEdgeChildVertex(edges[j]) < centre ? 1.0 : -1.0;
+        _s1.Start(fineEdge);
         auto const addPath = [&](Index f, int from, double weight) {
             int const size = _coarse.GetFaceVertices(f).size();
             for (int m = 1; m < size; ++m) {
+                if (2 * m == size) continue;
                 OrientedEdge const side = GetFaceSide(_coarse, f, (from + m) % size);
                 _s1.Add(side.edge, sign * weight * side.sign * (0.5 - static_cast<double>(m) / size));
             }
         };
         addPath(face, j, 1.0 - q);
-        if (q != 0.0) {
-            auto const faces = _coarse.GetEdgeFaces(edges[j]);
-            auto const places = _coarse.GetEdgeFaceLocalIndices(edges[j]);
-            int const other = faces[0] == face && places[0] == j ? 1 : 0;
-            addPath(faces[other], places[other], -q);
+        if (q == 0.0) continue;
+        auto const faces = _coarse.GetEdgeFaces(edges[j]);
+        auto const places = _coarse.GetEdgeFaceLocalIndices(edges[j]);
+        int const other = faces[0] == face && places[0] == j ? 1 : 0;
+        addPath(faces[other], places[other], -q);
+        // Two faces may share more sides than this one.
+        for (Index edge : _coarse.GetFaceEdges(faces[other])) {
+            if (std::count(edges.begin(), edges.end(), edge) + (faces[other] == face) > (edge == edges[j])) {
+                _s1.MarkRepeated(fineEdge);
+                break;
+            }
         }
-        _s1.EndRow(_coarse.GetFaceChildEdges(face)[j]);
     }
 }
 

@@ -728,10 +728,11 @@ TEST_F(Eval, CornersOfAPolygonAreItsUnitTiles) {
     // A pentagon's five corners lie in the unit tiles (0,0) (1,0) (2,0) (0,1) (1,1), each [0,1/2] squared.
     std::string const mesh = folder.Write("m.obj", "v 0 0 0\nv 2 0 0\nv 3 2 0\nv 1 3 0\nv -1 2 0\nf 1 2 3 4 5\n");
     EXPECT_EQ(At(mesh, "0,0,0\n0,1.25,0.5\n0,2.5,0\n0,0.25,1.25\n0,1.5,1.5\n").status, 0);
-    for (std::string const row : {"0,0.6,0", "0,0,0.6", "0,3,0", "0,3.2,0.1", "0,2.1,1.1", "0,0.1,2.1", "0,-0.1,0", "0,1e300,0", "0,nan,0"}) {
+    for (std::string const row : {"0,0.6,0", "0,0,0.6", "0,3,0", "0,3.2,0.1", "0,2.1,1.1", "0,0.1,2.1", "0,-0.1,0", "0,1e300,0"}) {
         std::string const error = ExpectError(At(mesh, row + "\n"), 3);
         EXPECT_TRUE(Contains(error, "row 0")) << row << ": " << error;
     }
+    EXPECT_TRUE(Contains(ExpectError(At(mesh, "0,nan,0\n"), 3), ":2: 'nan' in column s is no number"));
 }
 
 struct BadPlace {

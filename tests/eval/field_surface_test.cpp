@@ -92,5 +92,37 @@ TEST(FieldSurface, DoesNotDependOnTheLevelWhereItIsExact) {
     }
 }
 
+// What a texture's seams ask for: the two faces at an edge have one vector there, of any field
+// and on any level, since the refined faces on either side are as near to an extraordinary vertex.
+TEST(FieldSurface, IsTheSameFromBothSidesOfAnEdge) {
+    auto const findJump = [](engine::Scene const& scene, int levels) {
+        auto const refiner = far_ext::CreateRefiner(scene.cage);
+        eval::LimitSurface const surface(*refiner);
+        auto const level = refiner->GetLevel(0);
+        auto const noise = test::MakeRandomValues(static_cast<size_t>(level.GetNumEdges()), 4);
+        eval::FieldSurface const field(scene.cage, scene.positions, std::vector<double>(noise.begin(), noise.end()), levels);
+        eval::FieldSurface::Sampler sampler(field);
+        double jump = 0.0;
+        for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+            auto const faces = level.GetEdgeFaces(edge);
+            if (faces.size() != 2 || level.IsEdgeInfSharp(edge)) continue;
+            auto const locals = level.GetEdgeFaceLocalIndices(edge);
+            for (double tau : {0.11, 0.4, 0.83}) {
+                Vector sides[2];
+                for (int k : {0, 1}) {
+                    auto const place = eval::GetEdgePlace(surface, faces[k], level.GetFaceVertices(faces[k]).size(), locals[k], k == 0 ? tau : 1.0 - tau);
+                    sampler.Evaluate(faces[k], place.domain, {&place.s, 1}, {&place.t, 1}, {&sides[k], 1});
+                }
+                jump = std::max(jump, (sides[0] - sides[1]).norm() / (1.0 + sides[0].norm()));
+            }
+        }
+        return jump;
+    };
+    for (auto const& scene : {test::MakeTorus(9, 7), test::MakeTriangleTorus(9, 7), test::MakeCube(), test::MakeQuadSphere(1),
+                              test::MakeIrregularTriangles(7, 6, 2), test::MakeDodecahedron(), test::MakeGridWithHole(5, 4)}) {
+        for (int levels : {1, 3}) EXPECT_LT(findJump(scene, levels), 1e-11);
+    }
+}
+
 }  // namespace
 }  // namespace limn
