@@ -61,7 +61,9 @@ void Scatter(std::span<int const> places, float const* from, float* to) {
 /// So deep that a refined face is 1 to 2 texels wide, or that there are a million.
 int ChooseFieldLevels(Scene const& scene, BakeOptions const& options) {
     double const numFaces = std::max<double>(1.0, scene.cage.GetNumFaces());
-    double const texels = static_cast<double>(options.width) * options.height;
+    std::set<std::pair<double, double>> tiles;
+    for (size_t i = 0; i < scene.uvs.size(); i += 2) tiles.emplace(std::floor(scene.uvs[i]), std::floor(scene.uvs[i + 1]));
+    double const texels = static_cast<double>(options.width) * options.height * static_cast<double>(tiles.size());
     int levels = 0;
     while (levels < 8 && 4.0 * numFaces * std::pow(4.0, levels) < texels && numFaces * std::pow(4.0, levels + 1) < 1e6) ++levels;
     return levels;

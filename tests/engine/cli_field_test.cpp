@@ -218,6 +218,17 @@ TEST_F(CliFieldBake, WhatIsWrongIsNamed) {
     EXPECT_TRUE(Contains(ExpectError(Limn({"bake", spot, "-o", folder / "f.exr", "--maps", "field", "--field", bad}), 3), "vertex 1000 does not exist"));
 }
 
+TEST_F(CliFieldBake, TheSameBytesForAnyNumberOfThreads) {
+    for (std::string const threads : {"1", "4"}) {
+        ASSERT_EQ(Limn({"bake", spot, "-o", folder / (threads + ".exr"), "--maps", "field", "--field", WriteGradientOfY(spot), "--size", "128", "--space", "uv",
+                        "--normalize", "--samples", "2", "--preview", "--threads", threads})
+                      .status,
+                  0);
+    }
+    EXPECT_EQ(test::ReadText(folder / "1.exr"), test::ReadText(folder / "4.exr"));
+    EXPECT_EQ(test::ReadText(folder / "1.png"), test::ReadText(folder / "4.png"));
+}
+
 TEST_F(CliFieldBake, AnotherFieldIsNotUpToDate) {
     Words const words{"bake", spot, "-o", folder / "f.exr", "--maps", "field", "--field", WriteGradientOfY(spot), "--size", "64", "--skip-existing", "--report", folder / "r.json"};
     ASSERT_EQ(Limn(words).status, 0);
