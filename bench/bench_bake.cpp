@@ -10,6 +10,7 @@
 #include "engine/io/mesh_reader.h"
 #include "far_ext/refiner.h"
 #include "harness.h"
+#include "support/files.h"
 #include "peers/maketx.h"
 #include "peers/openexr_tiles.h"
 #include "support/meshes.h"
@@ -65,7 +66,7 @@ struct Subject {
           limnMips(folder / "limn_mips.exr"),
           peerMips(folder / "maketx.exr") {}
 
-    TemporaryFolder folder;
+    test::TemporaryFolder folder;
     std::string mesh, limn, packed, peer, limnMips, peerMips;
     HalfImage image;
     std::array<std::vector<float>, 3> planes;

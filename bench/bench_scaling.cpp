@@ -8,6 +8,7 @@
 #include "eval/surface_sampler.h"
 #include "far_ext/refiner.h"
 #include "harness.h"
+#include "support/files.h"
 #include "support/meshes.h"
 
 namespace limn::bench {
@@ -65,7 +66,7 @@ void PrintExponent(char const* what, std::vector<double> const& sizes, std::vect
 
 void MeasureImages(int numRounds) {
     fmt::print("\nNormal map of a torus of 4096 faces, half, ZIP, one thread\n");
-    TemporaryFolder const folder;
+    test::TemporaryFolder const folder;
     Case const torus(test::MakeTorus(64, 64));
     Rounds rounds(numRounds);
     std::vector<double> sizes;
@@ -86,7 +87,7 @@ void MeasureImages(int numRounds) {
 
 void MeasureMeshes(int numRounds) {
     fmt::print("\nToruses of 1 k to 1 M faces, one thread\n");
-    TemporaryFolder const folder;
+    test::TemporaryFolder const folder;
     Rounds rounds(numRounds);
     std::vector<std::unique_ptr<Case>> cases;
     std::vector<double> sizes;
@@ -121,7 +122,7 @@ void MeasureMeshes(int numRounds) {
 /// In child processes, so before anything else.
 void MeasurePeaks() {
     fmt::print("Peak memory of an 8192^2 bake of four float channels (map 'curvature'), two threads, with its mesh\n");
-    TemporaryFolder const folder;
+    test::TemporaryFolder const folder;
     auto const measure = [&](char const* name, auto makeScene, engine::ExrCompression compression) {
         Memory const memory = MeasureMemory([&] {
             OnThreads(2, [&] {

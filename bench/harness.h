@@ -199,26 +199,4 @@ inline double FitExponent(std::vector<double> const& sizes, std::vector<double> 
     return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-/// A folder of its own, in memory where there is /dev/shm, that goes with the object.
-class TemporaryFolder {
-public:
-    TemporaryFolder() {
-        namespace fs = std::filesystem;
-        std::string name = (fs::exists("/dev/shm") ? fs::path("/dev/shm") : fs::temp_directory_path()) / "limn-bench-XXXXXX";
-        Check(::mkdtemp(name.data()) != nullptr, "no temporary folder");
-        _path = name;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(_path, ignored);
-    }
-    TemporaryFolder(TemporaryFolder const&) = delete;
-    TemporaryFolder& operator=(TemporaryFolder const&) = delete;
-
-    std::string operator/(std::string const& name) const { return _path + "/" + name; }
-
-private:
-    std::string _path;
-};
-
 }  // namespace limn::bench

@@ -63,19 +63,11 @@ void Balance(Scene const& scene, std::vector<eval::FieldDesigner::Imbalance> con
     }
 }
 
-std::vector<int> FindVertexComponents(Far::TopologyLevel const& level, std::vector<int> const& ofFace) {
-    std::vector<int> ofVertex(static_cast<size_t>(level.GetNumVertices()), -1);
-    for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        for (Index vertex : level.GetFaceVertices(face)) ofVertex[vertex] = ofFace[face];
-    }
-    return ofVertex;
-}
-
 Form Design(Scene const& scene, Far::TopologyLevel const& level, FieldOptions const& options, FieldAudit& audit) {
     auto const start = std::chrono::steady_clock::now();
     eval::FieldDesigner designer(level, scene.positions, options.atBoundary);
     auto const& ofFace = designer.GetComponents().ofFace;
-    auto const ofVertex = FindVertexComponents(level, ofFace);
+    auto const& ofVertex = designer.GetComponentOfVertex();
     Form sources = Spread(options.sources, level.GetNumVertices(), "vertex");
     Form vortices = Spread(options.vortices, level.GetNumFaces(), "face");
     for (FieldStrength const& source : options.sources) {
@@ -84,19 +76,23 @@ Form Design(Scene const& scene, Far::TopologyLevel const& level, FieldOptions co
     Balance(scene, designer.FindSourceImbalance(sources), ofVertex, ofFace, "sources and sinks", options.isBalanced, sources);
     Balance(scene, designer.FindVortexImbalance(vortices), ofFace, ofFace, "vortices", options.isBalanced, vortices);
 
+    audit.numGenerators = designer.CountHarmonics();
+    if (!options.harmonics.empty() && static_cast<int>(options.harmonics.size()) != audit.numGenerators) {
+        throw Error(ErrorCode::BadMesh, fmt::format("{}: --harmonic gives {} coefficients; the surface has {} generators", scene.path, options.harmonics.size(),
+                                                    audit.numGenerators));
+    }
     Form form(static_cast<size_t>(level.GetNumEdges()), 0.0);
     if (!options.sources.empty()) AddTo(form, designer.MakeGradient(sources));
     if (!options.vortices.empty()) AddTo(form, designer.MakeVortex(vortices));
-    auto const& harmonics = designer.GetHarmonics();
-    audit.numGenerators = static_cast<int>(harmonics.size());
-    if (!options.harmonics.empty() && options.harmonics.size() != harmonics.size()) {
-        throw Error(ErrorCode::BadMesh, fmt::format("{}: --harmonic gives {} coefficients; the surface has {} generators", scene.path, options.harmonics.size(),
-                                                    harmonics.size()));
+    CheckInterrupted();
+    if (!options.harmonics.empty()) {
+        auto const& harmonics = designer.GetHarmonics();
+        for (size_t i = 0; i < harmonics.size(); ++i) AddTo(form, harmonics[i], options.harmonics[i]);
     }
-    for (size_t i = 0; i < options.harmonics.size(); ++i) AddTo(form, harmonics[i], options.harmonics[i]);
     if (!options.edges.empty()) AddTo(form, options.edges);
     if (!options.wanted.empty()) AddTo(form, eval::MatchVectors(level, scene.positions, options.wanted));
 
+    CheckInterrupted();
     auto const parts = designer.Decompose(form);
     audit.gradientNorm = designer.FindNorm(parts.gradient);
     audit.vortexNorm = designer.FindNorm(parts.vortex);
@@ -111,40 +107,45 @@ Form Design(Scene const& scene, Far::TopologyLevel const& level, FieldOptions co
     return form;
 }
 
-/// The largest entry of A B - C D, row by row.
-double FindLargestDifference(far_ext::SparseRows const& a, far_ext::SparseRows const& b, far_ext::SparseRows const& c, far_ext::SparseRows const& d) {
+/// The largest entry of A B - C D over `numColumns` columns, row by row.
+double FindLargestDifference(far_ext::SparseRows const& a, far_ext::SparseRows const& b, far_ext::SparseRows const& c, far_ext::SparseRows const& d,
+                             Index numColumns) {
     double largest = 0.0;
-    far_ext::WeightRow row;
+    Form row(static_cast<size_t>(numColumns), 0.0);  // 0 but for the columns touched
+    std::vector<Index> touched;
     auto const add = [&](far_ext::SparseRows const& left, far_ext::SparseRows const& right, int index, double sign) {
         for (int k = left.offsets[index]; k < left.offsets[index + 1]; ++k) {
             Index const inner = left.indices[k];
-            for (int m = right.offsets[inner]; m < right.offsets[inner + 1]; ++m) row.Add(right.indices[m], sign * left.weights[k] * right.weights[m]);
+            for (int m = right.offsets[inner]; m < right.offsets[inner + 1]; ++m) {
+                row[right.indices[m]] += sign * left.weights[k] * right.weights[m];
+                touched.push_back(right.indices[m]);
+            }
         }
     };
     for (int index = 0; index < a.GetNumRows(); ++index) {
-        row.Clear();
         add(a, b, index, 1.0);
         add(c, d, index, -1.0);
-        for (auto const& entry : row.GetEntries()) largest = std::max(largest, std::abs(entry.second));
+        for (Index column : touched) {
+            largest = std::max(largest, std::abs(row[column]));
+            row[column] = 0.0;
+        }
+        touched.clear();
     }
     return largest;
 }
 
 /// Refines the form, and checks at each step that its stencils commute.
-Form Subdivide(Far::TopologyRefiner const& refiner, Form form, FieldAudit* audit) {
+Form Subdivide(Far::TopologyRefiner const& refiner, Form form, FieldAudit& audit) {
     for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
         CheckInterrupted();
+        auto const coarse = refiner.GetLevel(level - 1), fine = refiner.GetLevel(level);
         auto const step = far_ext::BuildFormStencils(refiner, level);
-        if (audit) {
-            auto const coarse = refiner.GetLevel(level - 1), fine = refiner.GetLevel(level);
-            auto const s0 = far_ext::BuildSubdivisionRows(refiner, level, far_ext::SubdivisionRule::Scheme);
-            auto const d0 = far_ext::BuildD0(fine), d1 = far_ext::BuildD1(fine), coarseD0 = far_ext::BuildD0(coarse), coarseD1 = far_ext::BuildD1(coarse);
-            audit->commutationD0 = std::max(audit->commutationD0, FindLargestDifference(d0, s0, step.s1, coarseD0));
-            audit->commutationD1 = std::max(audit->commutationD1, FindLargestDifference(d1, step.s1, step.s2, coarseD1));
-        }
-        Form fine(static_cast<size_t>(step.s1.GetNumRows()));
-        step.s1.Apply(form.data(), fine.data(), 1);
-        form = std::move(fine);
+        auto const s0 = far_ext::BuildSubdivisionRows(refiner, level, far_ext::SubdivisionRule::Scheme);
+        audit.commutationD0 = std::max(audit.commutationD0, FindLargestDifference(far_ext::BuildD0(fine), s0, step.s1, far_ext::BuildD0(coarse),
+                                                                                  coarse.GetNumVertices()));
+        audit.commutationD1 = std::max(audit.commutationD1, FindLargestDifference(far_ext::BuildD1(fine), step.s1, step.s2, far_ext::BuildD1(coarse),
+                                                                                  coarse.GetNumEdges()));
+        form = step.s1.Apply(form);
     }
     return form;
 }
@@ -166,25 +167,21 @@ void FindVertexVectors(Field& field) {
 
 void FindFaceVectors(Field& field) {
     auto const level = field.refined->GetLevel(field.refined->GetMaxLevel());
-    Form values(3 * static_cast<size_t>(level.GetNumFaces()));
-    far_ext::BuildFaceVectors(level, field.mesh.positions).Apply(field.form.data(), values.data(), 1);
+    Form const values = far_ext::BuildFaceVectors(level, field.mesh.positions).Apply(field.form);
     for (size_t i = 0; i < values.size(); i += 3) field.faceVectors.push_back({values[i], values[i + 1], values[i + 2]});
 }
 
 }  // namespace
-
-std::vector<double> SubdivideForm(Far::TopologyRefiner const& refiner, std::vector<double> form) { return Subdivide(refiner, std::move(form), nullptr); }
 
 Field DesignField(Scene const& scene, Far::TopologyRefiner const& refiner, FieldOptions const& options, FieldAudit& audit) {
     far_ext::CheckForms(refiner);
     Form const control = Design(scene, refiner.GetLevel(0), options, audit);
 
     int levels = options.levels;
-    bool const isQuads = std::all_of(scene.cage.faceSizes.begin(), scene.cage.faceSizes.end(), [](int size) { return size == 4; });
-    if (options.hasVertexVectors && scene.cage.scheme == Sdc::SCHEME_CATMARK && !isQuads) levels = std::max(levels, 1);
+    if (options.hasVertexVectors && !far_ext::HasRefinedFaces(scene.cage)) levels = std::max(levels, 1);
     Field field;
     field.refined = MakeUniformRefiner(scene, levels);
-    field.form = Subdivide(*field.refined, control, &audit);
+    field.form = Subdivide(*field.refined, control, audit);
     field.mesh = RefineAllButPositions(scene, *field.refined);
     field.mesh.positions = scene.positions;
     for (int level = 1; level <= levels; ++level) field.mesh.positions = eval::RefineValues<3>(*field.refined, level, field.mesh.positions);

@@ -60,7 +60,4 @@ struct FieldAudit {
 /// Source  [Wang06] Sec. 5; forms.md 8
 Field DesignField(Scene const& scene, Far::TopologyRefiner const& refiner, FieldOptions const& options, FieldAudit& audit);
 
-/// A 1-form of the base on the last level of a refinement.
-std::vector<double> SubdivideForm(Far::TopologyRefiner const& refiner, std::vector<double> form);
-
 }  // namespace limn::engine

@@ -79,6 +79,15 @@ public:
         }
     }
 
+    /// Values from 0 (black) to 1 as greys, without a legend: they measure nothing.
+    void WriteGrey(std::string const& path) const {
+        PreviewBuilder::Picture picture{_size, _size, std::vector<uint8_t>(3 * NumPixels(), 38)};
+        for (size_t pixel = 0; pixel < NumPixels(); ++pixel) {
+            if (_coverage[pixel] > 0.0f) std::fill_n(&picture.pixels[3 * pixel], 3, static_cast<uint8_t>(255.0f * std::clamp(_values[pixel], 0.0f, 1.0f) + 0.5f));
+        }
+        WritePng(path, picture);
+    }
+
     Vector const& GetDirectionToEye() const { return _toEye; }
     double GetScale() const { return _scale; }  ///< pixels per unit of length
     Vector GetUp() const { return _up; }
@@ -164,6 +173,12 @@ private:
     double _scale = 1.0;
 };
 
+Vector BlendNormal(std::vector<double> const& normals, Vector const& weights, std::array<Index, 3> const& corners) {
+    Vector normal = Vector::Zero();
+    for (int k = 0; k < 3; ++k) normal += weights[k] * Vector(&normals[3 * static_cast<size_t>(corners[static_cast<size_t>(k)])]);
+    return normal.normalized();
+}
+
 }  // namespace
 
 void WriteValuePicture(std::string const& path, Scene const& scene, std::string const& primvar, PictureView const& view) {
@@ -185,13 +200,8 @@ void WriteHighlightPicture(std::string const& path, Scene const& scene, PictureV
     MeshPicture picture(scene, view);
     constexpr double kStripes = 24.0;  // from one horizon to the other
     picture.Draw([&](Vector const& weights, std::array<Index, 3> const& corners) {
-        Vector normal = Vector::Zero();
-        for (int k = 0; k < 3; ++k) {
-            auto const corner = static_cast<size_t>(corners[static_cast<size_t>(k)]);
-            normal += weights[k] * Vector(&normals[3 * corner]);
-        }
+        Vector const normal = BlendNormal(normals, weights, corners);
         // Strip lights far away, side by side: the reflected ray's height tells which one is met.
-        normal.normalize();
         Vector const ray = 2.0 * normal.dot(picture.GetDirectionToEye()) * normal - picture.GetDirectionToEye();
         double const height = std::asin(std::clamp(ray.dot(picture.GetUp()), -1.0, 1.0)) / std::acos(-1.0);
         double const wave = std::cos(2.0 * std::acos(-1.0) * kStripes * height);
@@ -205,12 +215,10 @@ void WriteArrowPicture(std::string const& path, Scene const& scene, std::vector<
     auto const normals = eval::FindAngleNormals(refiner->GetLevel(0), scene.positions);
     MeshPicture picture(scene, view);
     picture.Draw([&](Vector const& weights, std::array<Index, 3> const& corners) {
-        Vector normal = Vector::Zero();
-        for (int k = 0; k < 3; ++k) normal += weights[k] * Vector(&normals[3 * static_cast<size_t>(corners[static_cast<size_t>(k)])]);
-        return 0.4 + 0.6 * std::abs(normal.normalized().dot(picture.GetDirectionToEye()));
+        return 0.4 + 0.6 * std::abs(BlendNormal(normals, weights, corners).dot(picture.GetDirectionToEye()));
     });
     picture.DrawArrows(vectors, view.size / 32.0);
-    picture.Write(path, false);
+    picture.WriteGrey(path);
 }
 
 }  // namespace limn::engine

@@ -17,12 +17,6 @@ namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
 
-double Dot(std::span<double const> a, std::span<double const> b, std::span<double const> weights) {
-    double sum = 0.0;
-    for (size_t i = 0; i < a.size(); ++i) sum += weights[i] * a[i] * b[i];
-    return sum;
-}
-
 }  // namespace
 
 /// One of the two Laplacians, with the unknowns that are fixed to 0 left out.
@@ -89,33 +83,36 @@ FieldDesigner::FieldDesigner(Far::TopologyLevel const& level, std::span<double c
     }
 }
 
-std::vector<FieldDesigner::Imbalance> FieldDesigner::FindSourceImbalance(std::span<double const> sources) const {
+/// \param freeBoundary  the kind of boundary at which strengths may leave
+std::vector<FieldDesigner::Imbalance> FieldDesigner::FindImbalance(std::span<double const> strengths, std::vector<int> const& componentOf,
+                                                                   AtBoundary freeBoundary) const {
     std::vector<double> sums(static_cast<size_t>(_components.count), 0.0), sizes(sums);
-    for (size_t vertex = 0; vertex < sources.size(); ++vertex) {
-        if (_componentOfVertex[vertex] < 0) continue;
-        sums[_componentOfVertex[vertex]] += sources[vertex];
-        sizes[_componentOfVertex[vertex]] += std::abs(sources[vertex]);
+    for (size_t i = 0; i < strengths.size(); ++i) {
+        if (componentOf[i] < 0) continue;
+        sums[componentOf[i]] += strengths[i];
+        sizes[componentOf[i]] += std::abs(strengths[i]);
     }
     std::vector<Imbalance> found;
     for (int c = 0; c < _components.count; ++c) {
-        bool const canLeave = _isOpen[c] && _atBoundary == AtBoundary::Normal;
+        bool const canLeave = _isOpen[c] && _atBoundary == freeBoundary;
         if (!canLeave && std::abs(sums[c]) > 1e-12 * sizes[c]) found.push_back({c, sums[c]});
     }
     return found;
 }
 
+std::vector<FieldDesigner::Imbalance> FieldDesigner::FindSourceImbalance(std::span<double const> sources) const {
+    return FindImbalance(sources, _componentOfVertex, AtBoundary::Normal);
+}
+
 std::vector<FieldDesigner::Imbalance> FieldDesigner::FindVortexImbalance(std::span<double const> vortices) const {
-    std::vector<double> sums(static_cast<size_t>(_components.count), 0.0), sizes(sums);
-    for (size_t face = 0; face < vortices.size(); ++face) {
-        sums[_components.ofFace[face]] += vortices[face];
-        sizes[_components.ofFace[face]] += std::abs(vortices[face]);
-    }
-    std::vector<Imbalance> found;
-    for (int c = 0; c < _components.count; ++c) {
-        bool const canLeave = _isOpen[c] && _atBoundary == AtBoundary::Tangent;
-        if (!canLeave && std::abs(sums[c]) > 1e-12 * sizes[c]) found.push_back({c, sums[c]});
-    }
-    return found;
+    return FindImbalance(vortices, _components.ofFace, AtBoundary::Tangent);
+}
+
+int FieldDesigner::CountHarmonics() const {
+    std::vector<int> const euler = _components.FindEulerCharacteristics(_level);
+    int count = 0;
+    for (int c = 0; c < _components.count; ++c) count += (_isOpen[c] ? 1 : 2) - euler[c];
+    return count;
 }
 
 std::vector<double> FieldDesigner::MakeGradient(std::span<double const> sources) {
@@ -199,35 +196,33 @@ std::vector<double> FieldDesigner::FindInflow(std::span<double const> form) cons
     return inflow;
 }
 
-std::vector<double> FieldDesigner::FindCurl(std::span<double const> form) const {
-    std::vector<double> curl(static_cast<size_t>(_level.GetNumFaces()));
-    _d1.Apply(form.data(), curl.data(), 1);
-    return curl;
+std::vector<double> FieldDesigner::FindCurl(std::vector<double> const& form) const { return _d1.Apply(form); }
+
+double FieldDesigner::FindNorm(std::span<double const> form) const {
+    double sum = 0.0;
+    for (size_t edge = 0; edge < form.size(); ++edge) sum += _stars.edge[edge] * form[edge] * form[edge];
+    return std::sqrt(sum);
 }
 
-double FieldDesigner::FindNorm(std::span<double const> form) const { return std::sqrt(Dot(form, form, _stars.edge)); }
-
-/// Takes the gradient part out: what is left has no inflow.
-std::vector<double> FieldDesigner::Project(std::vector<double> form) {
+std::vector<double> FieldDesigner::FindGradientPart(std::span<double const> form) {
     std::vector<double> sources = FindInflow(form);
     for (double& source : sources) source = -source;
-    std::vector<double> const gradient = MakeGradient(sources);
-    for (size_t i = 0; i < form.size(); ++i) form[i] -= gradient[i];
-    return form;
+    return MakeGradient(sources);
 }
 
 std::vector<std::vector<double>> const& FieldDesigner::GetHarmonics() {
-    if (_hasHarmonics) return _harmonics;
-    _hasHarmonics = true;
-    for (auto const& closed : FindClosedForms(_level, _atBoundary == AtBoundary::Normal)) _harmonics.push_back(Project(closed));
+    if (!_harmonics.empty() || CountHarmonics() == 0) return _harmonics;
+    for (auto const& closed : FindClosedForms(_level, _atBoundary == AtBoundary::Normal)) {
+        _harmonics.push_back(closed);
+        std::vector<double> const gradient = FindGradientPart(closed);
+        for (size_t i = 0; i < closed.size(); ++i) _harmonics.back()[i] -= gradient[i];
+    }
     return _harmonics;
 }
 
-HodgeParts FieldDesigner::Decompose(std::span<double const> form) {
+HodgeParts FieldDesigner::Decompose(std::vector<double> const& form) {
     HodgeParts parts;
-    std::vector<double> sources = FindInflow(form);
-    for (double& source : sources) source = -source;
-    parts.gradient = MakeGradient(sources);
+    parts.gradient = FindGradientPart(form);
     parts.vortex = MakeVortex(FindCurl(form));
     parts.harmonic.assign(form.begin(), form.end());
     for (size_t i = 0; i < form.size(); ++i) parts.harmonic[i] -= parts.gradient[i] + parts.vortex[i];

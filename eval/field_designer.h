@@ -41,6 +41,7 @@ public:
 
     far_ext::HodgeStars const& GetStars() const { return _stars; }
     far_ext::FaceComponents const& GetComponents() const { return _components; }
+    std::vector<int> const& GetComponentOfVertex() const { return _componentOfVertex; }  ///< -1: no faces
 
     /// Strengths that have nowhere to go: their sum over a component (1) on which nothing can leave.
     struct Imbalance {
@@ -56,23 +57,26 @@ public:
     /// \param vortices  per face  \pre as MakeGradient, for the lowest face
     std::vector<double> MakeVortex(std::span<double const> vortices);
 
-    /// A basis of the harmonic forms: 2 g + max(b - 1, 0) per component of genus g with b boundary loops, each with period 1
-    /// round its generator.
+    /// How many harmonic forms there are: 2 g + max(b - 1, 0) per component of genus g with b boundary loops.
+    int CountHarmonics() const;
+
+    /// A basis of them, each with period 1 round its generator; a solve for each when first asked for.
     std::vector<std::vector<double>> const& GetHarmonics();
 
-    HodgeParts Decompose(std::span<double const> form);
+    HodgeParts Decompose(std::vector<double> const& form);
 
     /// Square root of sum *1 w^2: the field's root of energy.
     double FindNorm(std::span<double const> form) const;
 
     /// d0^T *1 w per vertex (0 at boundary vertices under Normal): what flows in. d1 w per face: curl.
     std::vector<double> FindInflow(std::span<double const> form) const;
-    std::vector<double> FindCurl(std::span<double const> form) const;
+    std::vector<double> FindCurl(std::vector<double> const& form) const;
 
 private:
     class Factorisation;
 
-    std::vector<double> Project(std::vector<double> form);
+    std::vector<Imbalance> FindImbalance(std::span<double const> strengths, std::vector<int> const& componentOf, AtBoundary freeBoundary) const;
+    std::vector<double> FindGradientPart(std::span<double const> form);
 
     Far::TopologyLevel _level;
     AtBoundary _atBoundary;
@@ -84,7 +88,6 @@ private:
     std::vector<char> _isFixedVertex;     // Normal: on a boundary
     std::vector<char> _isEmptyEdge;       // Normal: a boundary edge
     std::unique_ptr<Factorisation> _vertices, _faces;
-    bool _hasHarmonics = false;
     std::vector<std::vector<double>> _harmonics;
 };
 

@@ -10,6 +10,7 @@
 #include "far_ext/face_vectors.h"
 #include "far_ext/form_operators.h"
 #include "far_ext/hodge_star.h"
+#include "far_ext/sparse_matrix.h"
 
 namespace limn::eval {
 
@@ -21,17 +22,13 @@ using Triplets = std::vector<Eigen::Triplet<double>>;
 constexpr double kSmoothness = 1e-6;  // of curl and divergence, against the vectors
 constexpr double kRest = 1e-12;       // of the field itself: decides where nothing else does
 
-Matrix AsMatrix(far_ext::SparseRows const& rows, Index numColumns) {
-    return Eigen::Map<Matrix const>(rows.GetNumRows(), numColumns, static_cast<Eigen::Index>(rows.weights.size()), rows.offsets.data(),
-                                    rows.indices.data(), rows.weights.data());
-}
-
 }  // namespace
 
 std::vector<double> MatchVectors(Far::TopologyLevel const& level, std::span<double const> positions, std::span<WantedVector const> wanted) {
     far_ext::HodgeStars const stars = far_ext::FindHodgeStars(level, positions);
     Index const numEdges = level.GetNumEdges();
-    Matrix const faceVectors = AsMatrix(far_ext::BuildFaceVectors(level, positions), numEdges);
+    far_ext::SparseRows const faceVectorRows = far_ext::BuildFaceVectors(level, positions), curlRows = far_ext::BuildD1(level);
+    Matrix const faceVectors = far_ext::AsMatrix(faceVectorRows, numEdges);
     double const meanArea = std::accumulate(stars.area.begin(), stars.area.end(), 0.0) / static_cast<double>(stars.area.size());
 
     // Three rows per wanted vector, over the faces' vectors.
@@ -68,7 +65,7 @@ std::vector<double> MatchVectors(Far::TopologyLevel const& level, std::span<doub
     }
     Matrix divergence(level.GetNumVertices(), numEdges);
     divergence.setFromTriplets(divergences.begin(), divergences.end());
-    Matrix curl = AsMatrix(far_ext::BuildD1(level), numEdges);
+    Matrix curl = far_ext::AsMatrix(curlRows, numEdges);
     for (Index face = 0; face < level.GetNumFaces(); ++face) curl.row(face) /= std::sqrt(stars.area[face]);
 
     Eigen::SparseMatrix<double> system = Matrix(fit.transpose() * fit);

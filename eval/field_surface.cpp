@@ -17,8 +17,7 @@ namespace limn::eval {
 
 FieldSurface::FieldSurface(far_ext::ControlMesh const& cage, std::span<double const> positions, std::span<double const> form, int levels)
     : _positions(positions.begin(), positions.end()), _form(form.begin(), form.end()) {
-    bool const isQuads = std::all_of(cage.faceSizes.begin(), cage.faceSizes.end(), [](int size) { return size == 4; });
-    if (cage.scheme == Sdc::SCHEME_CATMARK && !isQuads) levels = std::max(levels, 1);
+    if (!far_ext::HasRefinedFaces(cage)) levels = std::max(levels, 1);
     double const corners = static_cast<double>(cage.faceVertices.size()) * std::pow(4.0, levels);
     if (corners > 2e9) throw Error(ErrorCode::TooLarge, "the field's refined mesh would pass 2^31 indices; use a smaller texture");
 
@@ -32,15 +31,9 @@ FieldSurface::FieldSurface(far_ext::ControlMesh const& cage, std::span<double co
     }
     for (int level = 1; level <= levels; ++level) {
         _positions = RefineValues<3>(*base, level, _positions);
-        auto const step = far_ext::BuildFormStencils(*base, level);
-        std::vector<double> fine(static_cast<size_t>(step.s1.GetNumRows()));
-        step.s1.Apply(_form.data(), fine.data(), 1);
-        _form = std::move(fine);
+        _form = far_ext::BuildFormStencils(*base, level).s1.Apply(_form);
     }
-    _vectors.resize(_positions.size() / 3);
-    VertexCovectors const covectors(*base, levels);
-    tbb::parallel_for(Index(0), static_cast<Index>(_vectors.size()),
-                      [&](Index vertex) { _vectors[vertex] = covectors.Find(vertex, _form, _positions).GetVector(); });
+    FindVectors(*base);
 
     // The refined cage's own edges have other numbers.
     _cage = levels > 0 ? far_ext::MakeRefinedCage(*base, cage) : cage;
@@ -53,6 +46,25 @@ FieldSurface::FieldSurface(far_ext::ControlMesh const& cage, std::span<double co
     }
     _form = std::move(renumbered);
     _surface = std::make_unique<LimitSurface>(*_refiner);
+}
+
+/// At the corners of faces that are not regular.
+void FieldSurface::FindVectors(Far::TopologyRefiner const& refiner) {
+    auto const level = refiner.GetLevel(refiner.GetMaxLevel());
+    int const valence = refiner.GetSchemeType() == Sdc::SCHEME_LOOP ? 6 : 4;
+    std::vector<char> isNeeded(static_cast<size_t>(level.GetNumVertices()), 0);
+    for (Index face = 0; face < level.GetNumFaces(); ++face) {
+        auto const corners = level.GetFaceVertices(face);
+        bool const isRegular = std::all_of(corners.begin(), corners.end(), [&](Index vertex) {
+            return level.GetVertexFaces(vertex).size() == valence && far_ext::IsSmoothInterior(level, vertex);
+        });
+        for (Index vertex : corners) isNeeded[vertex] |= !isRegular;
+    }
+    _vectors.assign(isNeeded.size(), Eigen::Vector3d::Zero());
+    VertexCovectors const covectors(refiner, refiner.GetMaxLevel());
+    tbb::parallel_for(Index(0), level.GetNumVertices(), [&](Index vertex) {
+        if (isNeeded[vertex]) _vectors[vertex] = covectors.Find(vertex, _form, _positions).GetVector();
+    });
 }
 
 FieldSurface::Sampler::Sampler(FieldSurface const& field) : _field(field), _tree(*field._surface, field._positions, 3) {}
@@ -84,17 +96,12 @@ Eigen::Vector3d FieldSurface::Sampler::EvaluateHere(RefinedFaces::Place const& p
 }
 
 void FieldSurface::Sampler::Evaluate(Index face, int domain, std::span<double const> s, std::span<double const> t, std::span<Eigen::Vector3d> vectors) {
-    // Places in the order of refined faces, each of which is bound once.
-    _places.clear();
-    for (size_t i = 0; i < s.size(); ++i) _places.push_back({_field._faces->Find(face, domain, s[i], t[i]), i});
-    std::sort(_places.begin(), _places.end(), [](Place const& a, Place const& b) {
-        return a.at.face != b.at.face ? a.at.face < b.at.face : a.sample < b.sample;
-    });
+    _field._faces->FindSorted(face, domain, s, t, _places);
     Index bound = -1;
-    for (Place const& place : _places) {
+    for (auto const& place : _places) {
         if (place.at.face != bound) Bind(place.at.face);
         bound = place.at.face;
-        vectors[place.sample] = EvaluateHere(place.at);
+        vectors[place.index] = EvaluateHere(place.at);
     }
 }
 

@@ -40,29 +40,26 @@ public:
         void Evaluate(Index face, int domain, std::span<double const> s, std::span<double const> t, std::span<Eigen::Vector3d> vectors);
 
     private:
-        struct Place {
-            RefinedFaces::Place at;
-            size_t sample;
-        };
-
         void Bind(Index face);
         Eigen::Vector3d EvaluateHere(RefinedFaces::Place const& place);
 
         FieldSurface const& _field;
         FaceTree _tree;
-        std::vector<Place> _places;
+        std::vector<RefinedFaces::Sample> _places;
         bool _isRegular = false;
         QuadFormPatch _quad;          // one of these is of the
         TriangleFormPatch _triangle;  // bound face, if it is regular
     };
 
 private:
+    void FindVectors(Far::TopologyRefiner const& refiner);
+
     far_ext::ControlMesh _cage;  // refined
     std::vector<double> _positions, _form;
     std::unique_ptr<Far::TopologyRefiner> _refiner;  // of the refined cage
     std::unique_ptr<LimitSurface> _surface;
     std::unique_ptr<RefinedFaces> _faces;
-    std::vector<Eigen::Vector3d> _vectors;  // at its vertices
+    std::vector<Eigen::Vector3d> _vectors;  // at its vertices, where they are needed
 };
 
 }  // namespace limn::eval

@@ -1,5 +1,7 @@
 #include "eval/refined_faces.h"
 
+#include <algorithm>
+
 namespace limn::eval {
 
 RefinedFaces::RefinedFaces(LimitSurface const& base, int levels) : _levels(levels), _isLoop(base.IsLoop()) {
@@ -25,6 +27,12 @@ RefinedFaces::Place RefinedFaces::Find(Index face, int domain, double s, double 
         place.face = first + GetChildAt(_isLoop, place.s, place.t);
     }
     return place;
+}
+
+void RefinedFaces::FindSorted(Index face, int domain, std::span<double const> s, std::span<double const> t, std::vector<Sample>& samples) const {
+    samples.clear();
+    for (size_t i = 0; i < s.size(); ++i) samples.push_back({Find(face, domain, s[i], t[i]), i});
+    std::sort(samples.begin(), samples.end(), [](Sample const& a, Sample const& b) { return a.at.face != b.at.face ? a.at.face < b.at.face : a.index < b.index; });
 }
 
 }  // namespace limn::eval

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "eval/limit_surface.h"
@@ -21,6 +22,15 @@ public:
     RefinedFaces(LimitSurface const& base, int levels);
 
     Place Find(Index face, int domain, double s, double t) const;
+
+    /// A place of a list, and which one it was.
+    struct Sample {
+        Place at;
+        size_t index;
+    };
+
+    /// Finds places of one face and domain, in the order of refined faces: each of these need be bound once only.
+    void FindSorted(Index face, int domain, std::span<double const> s, std::span<double const> t, std::vector<Sample>& samples) const;
 
 private:
     int _levels;

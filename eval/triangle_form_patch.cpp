@@ -34,18 +34,12 @@ Terms MakeTerms(double s, double t) {
     return terms;
 }
 
-bool IsRegularVertex(Far::TopologyLevel const& level, Index vertex) {
-    auto const edges = level.GetVertexEdges(vertex);
-    return edges.size() == 6 && level.GetVertexFaces(vertex).size() == 6 && level.GetVertexRule(vertex) == Sdc::Crease::RULE_SMOOTH &&
-           std::all_of(edges.begin(), edges.end(), [&](Index edge) { return level.GetEdgeSharpness(edge) <= 0.0f; });
-}
-
 /// The edges round a triangle: per corner its spokes outwards and its ring, counter-clockwise from the triangle's side on.
 bool GatherEdges(Far::TopologyLevel const& level, Index face, std::array<far_ext::OrientedEdge, kNumPlaces>& places) {
     size_t at = 0;
     for (Index vertex : level.GetFaceVertices(face)) {
-        if (!IsRegularVertex(level, vertex)) return false;
         auto const faces = level.GetVertexFaces(vertex);
+        if (faces.size() != 6 || !far_ext::IsSmoothInterior(level, vertex)) return false;
         auto const corners = level.GetVertexFaceLocalIndices(vertex);
         int first = 0;
         while (faces[first] != face) ++first;

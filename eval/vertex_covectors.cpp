@@ -1,13 +1,13 @@
 #include "eval/vertex_covectors.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <Eigen/Dense>
 
+#include "far_ext/find_wheel.h"
 #include "far_ext/form_operators.h"
-#include "far_ext/form_stencils.h"
+
 
 namespace limn::eval {
 
@@ -139,7 +139,7 @@ VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel co
         row.vertex = mask.vertex;
         row.ends = mask.ends;
         row.corners = mask.corners;
-        row.edges.assign(static_cast<size_t>(wheel.GetFirstOuterSide(static_cast<int>(k))), 0.0);
+        row.edges.assign(numSpokes + static_cast<size_t>(k * (numSides - 2)), 0.0);
         auto const addSide = [&](Eigen::Index face, int m, double weight) {
             if (m == 0) row.edges[static_cast<size_t>(face)] += weight;
             else if (m == numSides - 1) row.edges[(static_cast<size_t>(face) + 1) % numSpokes] -= weight;
@@ -172,19 +172,13 @@ VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel co
     return rows;
 }
 
-VertexCovectors::VertexCovectors(Far::TopologyRefiner const& refiner, int level) : _refiner(refiner), _index(level), _level(refiner.GetLevel(level)) {
+VertexCovectors::VertexCovectors(Far::TopologyRefiner const& refiner, int level) : _refiner(refiner), _level(refiner.GetLevel(level)) {
     for (Index vertex = 0; vertex < _level.GetNumVertices(); ++vertex) {
         size_t const k = static_cast<size_t>(_level.GetVertexFaces(vertex).size());
-        if (k == 0 || !IsPlain(vertex)) continue;
+        if (k == 0 || !far_ext::IsSmoothInterior(_level, vertex)) continue;
         if (_plainRows.size() <= k) _plainRows.resize(k + 1);
         if (!_plainRows[k]) _plainRows[k] = MakeRows(refiner.GetSchemeType(), far_ext::MakeSmoothWheel(refiner.GetSchemeType(), static_cast<int>(k)));
     }
-}
-
-bool VertexCovectors::IsPlain(Index vertex) const {
-    if (_level.GetVertexRule(vertex) != Sdc::Crease::RULE_SMOOTH || _level.IsVertexBoundary(vertex)) return false;
-    auto const edges = _level.GetVertexEdges(vertex);
-    return std::all_of(edges.begin(), edges.end(), [&](Index edge) { return _level.GetEdgeSharpness(edge) <= 0.0f; });
 }
 
 VertexCovector VertexCovectors::Find(Index vertex, std::span<double const> form, std::span<double const> positions) const {
@@ -195,8 +189,8 @@ VertexCovector VertexCovectors::Find(Index vertex, std::span<double const> form,
     VertexCovector result{{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}, {}};
     if (faces.size() == 0) return result;
     Rows own;
-    bool const isPlain = IsPlain(vertex);
-    if (!isPlain) own = MakeRows(_refiner.GetSchemeType(), far_ext::FindLimitWheel(_refiner, _index, vertex));
+    bool const isPlain = far_ext::IsSmoothInterior(_level, vertex);
+    if (!isPlain) own = MakeRows(_refiner.GetSchemeType(), far_ext::FindWheel(_refiner, _level, nullptr, vertex));
     Rows const& rows = isPlain ? *_plainRows[static_cast<size_t>(faces.size())] : own;
 
     auto const at = [&](Index v) { return Eigen::Map<Eigen::Vector3d const>(&positions[3 * static_cast<size_t>(v)]); };

@@ -26,9 +26,10 @@ struct VertexCovector {
 
 /// Limits at the vertices of one level.
 ///
-/// Exact      at interior vertices, on boundaries and infinitely sharp creases (the side of the first fan) up to 3
-///            triangles or 2 quads per fan, at corners. Semi-sharp features count as sharp: refine until they have faded.
-///            Larger boundary fans, and single quads on a smooth boundary, have no limit: the value is that of the mask.
+/// Exact      at smooth interior vertices, on boundaries and infinitely sharp creases (the side of the first fan) for fans of
+///            up to 5 triangles or 2 to 3 quads, at corners. Semi-sharp features count as sharp: refine until they have faded.
+///            Larger fans and single quads on a smooth boundary have no limit, and darts no exact mask: the value is an
+///            approximation there.
 /// Threads    immutable; Find may run on many.
 /// \param form       per edge of the level
 /// \param positions  3 per vertex of the level
@@ -49,11 +50,9 @@ private:
     };
     using Rows = std::array<Row, 2>;
 
-    bool IsPlain(Index vertex) const;
     static Rows MakeRows(Sdc::SchemeType scheme, far_ext::Wheel const& wheel);
 
     Far::TopologyRefiner const& _refiner;
-    int _index;
     Far::TopologyLevel _level;
     std::vector<std::optional<Rows>> _plainRows;  // of smooth interior vertices, by valence
 };

@@ -14,6 +14,9 @@ namespace limn::far_ext {
 
 namespace {
 
+/// The dense system of a half grows with the square of its fan: 1500 unknowns for 64 quads.
+constexpr int kMaxFan = 64;
+
 int FindSpoke(Far::TopologyLevel const& level, Index vertex, Index edge) {
     auto const edges = level.GetVertexEdges(vertex);
     return static_cast<int>(std::find(edges.begin(), edges.end(), edge) - edges.begin());
@@ -251,6 +254,9 @@ EdgeLimits::HalfLimit EdgeLimits::SolveHalf(Kind kind, int size, int spoke) cons
 }
 
 EdgeLimits::HalfLimit const& EdgeLimits::FindHalf(Fan const& fan) {
+    if (fan.size > kMaxFan) {
+        throw Error(ErrorCode::TooLarge, fmt::format("a fan of {} faces; limits along edges are found for up to {}", fan.size, kMaxFan));
+    }
     auto const key = std::tuple(fan.kind, fan.size, fan.kind == Kind::Interior ? 0 : fan.spoke);
     auto const found = _halves.find(key);
     if (found != _halves.end()) return found->second;

@@ -29,7 +29,7 @@ public:
     /// \pre            CheckForms has passed
     EdgeLimits(Far::TopologyRefiner const& refiner, int level);
 
-    /// \throws Error  BadOption: a semi-sharp feature near the edge
+    /// \throws Error  BadOption: a semi-sharp feature near the edge.  TooLarge: more than 64 faces between sharp edges at an end
     WeightRow Find(Index edge);
 
 private:

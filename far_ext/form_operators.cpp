@@ -1,5 +1,6 @@
 #include "far_ext/form_operators.h"
 
+#include <algorithm>
 #include <vector>
 
 #include <fmt/format.h>
@@ -67,6 +68,17 @@ void CheckWinding(Far::TopologyLevel const& level) {
 }
 
 }  // namespace
+
+bool IsSmoothInterior(Far::TopologyLevel const& level, Index vertex) {
+    if (level.GetVertexRule(vertex) != Sdc::Crease::RULE_SMOOTH || level.IsVertexBoundary(vertex)) return false;
+    auto const edges = level.GetVertexEdges(vertex);
+    return std::all_of(edges.begin(), edges.end(), [&](Index edge) { return level.GetEdgeSharpness(edge) <= 0.0f; });
+}
+
+bool HasRefinedFaces(ControlMesh const& mesh) {
+    int const wanted = mesh.scheme == Sdc::SCHEME_LOOP ? 3 : 4;
+    return std::all_of(mesh.faceSizes.begin(), mesh.faceSizes.end(), [&](int size) { return size == wanted; });
+}
 
 SparseRows BuildD0(Far::TopologyLevel const& level) {
     SparseRows rows;

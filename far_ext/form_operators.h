@@ -2,6 +2,7 @@
 
 #include <opensubdiv/far/topologyRefiner.h>
 
+#include "far_ext/control_mesh.h"
 #include "far_ext/sparse_rows.h"
 
 namespace limn::far_ext {
@@ -29,6 +30,12 @@ inline OrientedEdge GetFaceSide(Far::TopologyLevel const& level, Index face, int
     Index const edge = level.GetFaceEdges(face)[j];
     return {edge, GetSignFrom(level, edge, level.GetFaceVertices(face)[j])};
 }
+
+/// A smooth vertex with faces all round it and no sharp edge: no feature reaches it.
+bool IsSmoothInterior(Far::TopologyLevel const& level, Index vertex);
+
+/// Whether all faces are what the scheme's refined ones are: quads, for Loop triangles.
+bool HasRefinedFaces(ControlMesh const& mesh);
 
 /// d0: edges x vertices. (d0 f)(a -> b) = f(b) - f(a).
 SparseRows BuildD0(Far::TopologyLevel const& level);

@@ -1,91 +1,20 @@
 #include "far_ext/form_stencils.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
 #include <memory>
-#include <utility>
 
-#include <Eigen/SparseCore>
 #include <fmt/format.h>
-#include <opensubdiv/sdc/crease.h>
 
 #include "far_ext/error.h"
+#include "far_ext/find_wheel.h"
 #include "far_ext/form_operators.h"
+#include "far_ext/row_writer.h"
+#include "far_ext/sparse_matrix.h"
 
 namespace limn::far_ext {
 
 namespace {
-
-using Rule = Sdc::Crease::Rule;
-
-bool IsSmooth(Rule rule) { return rule == Sdc::Crease::RULE_SMOOTH || rule == Sdc::Crease::RULE_DART; }
-
-/// Rows of known sizes, filled in any order.
-class RowWriter {
-public:
-    explicit RowWriter(Index numRows) { _rows.offsets.assign(static_cast<size_t>(numRows) + 1, 0); }
-
-    void SetSize(Index row, size_t size) { _rows.offsets[static_cast<size_t>(row) + 1] = static_cast<int>(size); }
-
-    /// \throws Error  TooLarge: more than 2^31 entries
-    void Allocate() {
-        size_t total = 0;
-        for (size_t row = 1; row < _rows.offsets.size(); ++row) {
-            total += static_cast<size_t>(_rows.offsets[row]);
-            if (total > static_cast<size_t>(std::numeric_limits<int>::max())) {
-                throw Error(ErrorCode::TooLarge, "the stencil tables of forms pass 2^31 entries; refine fewer levels");
-            }
-            _rows.offsets[row] = static_cast<int>(total);
-        }
-        _rows.indices.resize(total);
-        _rows.weights.resize(total);
-    }
-
-    void Start(Index row) { _at = static_cast<size_t>(_rows.offsets[row]); }
-    void Add(Index column, double weight) {
-        _rows.indices[_at] = column;
-        _rows.weights[_at++] = weight;
-    }
-
-    /// Adds up entries of the same column in a row: a side that two faces share (valence 2, small closed meshes) comes twice.
-    void MarkRepeated(Index row) { _repeated.push_back(row); }
-
-    SparseRows Get() {
-        if (!_repeated.empty()) Merge();
-        return std::move(_rows);
-    }
-
-private:
-    void Merge() {
-        std::vector<char> isRepeated(_rows.offsets.size(), 0);
-        for (Index row : _repeated) isRepeated[row] = 1;
-        size_t to = 0;
-        for (int row = 0; row < _rows.GetNumRows(); ++row) {
-            size_t const begin = static_cast<size_t>(row == 0 ? 0 : _end), end = static_cast<size_t>(_rows.offsets[row + 1]), first = to;
-            _end = _rows.offsets[row + 1];
-            for (size_t k = begin; k < end; ++k) {
-                size_t same = first;
-                while (isRepeated[row] && same < to && _rows.indices[same] != _rows.indices[k]) ++same;
-                if (isRepeated[row] && same < to) {
-                    _rows.weights[same] += _rows.weights[k];
-                    continue;
-                }
-                _rows.indices[to] = _rows.indices[k];
-                _rows.weights[to++] = _rows.weights[k];
-            }
-            _rows.offsets[row + 1] = static_cast<int>(to);
-        }
-        _rows.indices.resize(to);
-        _rows.weights.resize(to);
-    }
-
-    SparseRows _rows;
-    std::vector<Index> _repeated;
-    size_t _at = 0;
-    int _end = 0;  // of the row before, where Merge reads
-};
 
 /// Everything in a wheel that its rows depend on.
 std::vector<double> MakeKey(Wheel const& wheel) {
@@ -98,66 +27,6 @@ std::vector<double> MakeKey(Wheel const& wheel) {
         key.insert(key.end(), rule->isSharp.begin(), rule->isSharp.end());
     }
     return key;
-}
-
-/// p or q: what an edge's rule gives to each side beyond its ends.
-double FindFaceShare(Sdc::SchemeType scheme, Far::TopologyLevel const& level, Far::TopologyLevel const* next, Index edge) {
-    double const smooth = scheme == Sdc::SCHEME_LOOP ? 0.125 : 0.25;
-    float const sharpness = level.GetEdgeSharpness(edge);
-    if (sharpness <= 0.0f) return smooth;
-    if (!next || next->GetVertexRule(level.GetEdgeChildVertex(edge)) == Sdc::Crease::RULE_CREASE) return 0.0;
-    return smooth * static_cast<double>(1.0f - sharpness);
-}
-
-/// \param next  the level after; without one sharpness stays
-Wheel FindWheel(Far::TopologyRefiner const& refiner, Far::TopologyLevel const& level, Far::TopologyLevel const* next, Index vertex) {
-    Sdc::SchemeType const scheme = refiner.GetSchemeType();
-    Sdc::Crease const creasing(refiner.GetSchemeOptions());
-    auto const faces = level.GetVertexFaces(vertex);
-    auto const edges = level.GetVertexEdges(vertex);
-    int const numSpokes = edges.size(), k = faces.size();
-    Wheel wheel;
-    wheel.isInterior = numSpokes == k;
-    for (Index face : faces) wheel.sizes.push_back(level.GetFaceVertices(face).size());
-
-    // Sharpness before and after, and the two rules between which OpenSubdiv blends.
-    std::vector<float> before, after;
-    for (Index edge : edges) {
-        wheel.faceShares.push_back(FindFaceShare(scheme, level, next, edge));
-        before.push_back(level.GetEdgeSharpness(edge));
-        after.push_back(next ? next->GetEdgeSharpness(level.GetEdgeChildEdges(edge)[level.GetEdgeVertices(edge)[0] == vertex ? 0 : 1]) : before.back());
-    }
-    Rule const parent = level.GetVertexRule(vertex);
-    Rule child = parent;
-    double t = 1.0;
-    if (next) {
-        Index const childVertex = level.GetVertexChildVertex(vertex);
-        child = next->GetVertexRule(childVertex);
-        if (parent != child && !IsSmooth(parent)) {
-            t = static_cast<double>(creasing.ComputeFractionalWeightAtVertex(level.GetVertexSharpness(vertex), next->GetVertexSharpness(childVertex),
-                                                                             numSpokes, before.data(), after.data()));
-        }
-    }
-
-    wheel.edgeWeights.assign(static_cast<size_t>(numSpokes), 0.0);
-    double const square = static_cast<double>(numSpokes) * numSpokes;
-    auto const add = [&](Wheel::Rule& target, Rule rule, std::vector<float> const& sharpness, double share) {
-        target.share = share;
-        target.isCrease = rule == Sdc::Crease::RULE_CREASE;
-        for (float s : sharpness) target.isSharp.push_back(s > 0.0f);
-        if (share == 0.0) return;
-        if (IsSmooth(rule)) {
-            for (double& a : wheel.edgeWeights) a += share * (scheme == Sdc::SCHEME_LOOP ? GetLoopWeight(k) : 1.0 / square);
-            if (scheme == Sdc::SCHEME_CATMARK) wheel.faceWeight += share / square;
-        } else if (target.isCrease) {
-            int ends[2];
-            creasing.GetSharpEdgePairOfCrease(sharpness.data(), numSpokes, ends);
-            for (int end : ends) wheel.edgeWeights[static_cast<size_t>(end)] += share * 0.125;
-        }
-    };
-    add(wheel.parent, parent, before, t);
-    add(wheel.child, child, after, 1.0 - t);
-    return wheel;
 }
 
 /// What is read of a level to make the next one's stencils. Rows are measured first and written in place; wheels that look
@@ -194,7 +63,7 @@ public:
 private:
     WheelRows const& GetRows(Index vertex);
     bool IsSmoothAndRegular(Index vertex) const;
-    double FindShare(Index edge) const { return FindFaceShare(_scheme, _coarse, &_fine, edge); }
+    double FindShare(Index edge) const { return FindFaceShare(_refiner, _coarse, &_fine, edge); }
     Index GetFineSpoke(Index vertex, Index edge) const {
         return _coarse.GetEdgeChildEdges(edge)[_coarse.GetEdgeVertices(edge)[0] == vertex ? 0 : 1];
     }
@@ -233,14 +102,12 @@ private:
     std::vector<Index> _seen;                                  // per edge: the vertex whose wheel it was last found in
 };
 
+/// Its wheel depends on its valence alone.
 bool FormStencilBuilder::IsSmoothAndRegular(Index vertex) const {
-    if (_coarse.GetVertexRule(vertex) != Sdc::Crease::RULE_SMOOTH || _coarse.IsVertexBoundary(vertex)) return false;
-    for (Index edge : _coarse.GetVertexEdges(vertex)) {
-        if (_coarse.GetEdgeSharpness(edge) > 0.0f) return false;
-    }
     int const size = _scheme == Sdc::SCHEME_LOOP ? 3 : 4;
     auto const faces = _coarse.GetVertexFaces(vertex);
-    return std::all_of(faces.begin(), faces.end(), [&](Index face) { return _coarse.GetFaceVertices(face).size() == size; });
+    return IsSmoothInterior(_coarse, vertex) &&
+           std::all_of(faces.begin(), faces.end(), [&](Index face) { return _coarse.GetFaceVertices(face).size() == size; });
 }
 
 WheelRows const& FormStencilBuilder::GetRows(Index vertex) {
@@ -377,12 +244,7 @@ void FormStencilBuilder::WriteEdgesToCentre(Index face) {
 }
 
 SparseRows Multiply(SparseRows const& a, SparseRows const& b, Index numColumns) {
-    using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
-    auto const view = [](SparseRows const& rows, Index columns) {
-        return Eigen::Map<Matrix const>(rows.GetNumRows(), columns, static_cast<Eigen::Index>(rows.weights.size()), rows.offsets.data(),
-                                        rows.indices.data(), rows.weights.data());
-    };
-    Matrix product = view(a, b.GetNumRows()) * view(b, numColumns);
+    Eigen::SparseMatrix<double, Eigen::RowMajor, int> product = AsMatrix(a, b.GetNumRows()) * AsMatrix(b, numColumns);
     product.makeCompressed();
     SparseRows result;
     result.offsets.assign(product.outerIndexPtr(), product.outerIndexPtr() + product.rows() + 1);
@@ -394,10 +256,6 @@ SparseRows Multiply(SparseRows const& a, SparseRows const& b, Index numColumns) 
 }  // namespace
 
 FormStencils BuildFormStencils(Far::TopologyRefiner const& refiner, int level) { return FormStencilBuilder(refiner, level).Build(); }
-
-Wheel FindLimitWheel(Far::TopologyRefiner const& refiner, int level, Index vertex) {
-    return FindWheel(refiner, refiner.GetLevel(level), nullptr, vertex);
-}
 
 FormStencils ComposeFormStencils(Far::TopologyRefiner const& refiner, int level) {
     FormStencils total = BuildFormStencils(refiner, 1);

@@ -2,7 +2,6 @@
 
 #include <opensubdiv/far/topologyRefiner.h>
 
-#include "far_ext/form_wheel.h"
 #include "far_ext/sparse_rows.h"
 #include "far_ext/stencil_rows.h"
 
@@ -26,11 +25,6 @@ struct FormStencils {
 /// \pre            CheckForms has passed
 /// \throws Error   TooLarge: more than 2^31 entries, or a vertex with more than 4096 faces (named)
 FormStencils BuildFormStencils(Far::TopologyRefiner const& refiner, int level);
-
-/// The wheel of a vertex of `level`, with sharpness that stays as it is: that of the limit, where none fades any more.
-///
-/// \pre  the vertex has faces
-Wheel FindLimitWheel(Far::TopologyRefiner const& refiner, int level, Index vertex);
 
 /// All steps up to `level` in one table each: over the edges and faces of the base.
 ///

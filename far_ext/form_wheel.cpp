@@ -98,7 +98,14 @@ void Centre(Wheel const& wheel, std::vector<Chain>& flow) {
 /// A 1-chain on the wheel in the making.
 class EdgeChain {
 public:
-    explicit EdgeChain(Wheel const& wheel) : _wheel(wheel), _weights(static_cast<size_t>(wheel.GetFirstOuterSide(wheel.GetNumFaces())), 0.0) {}
+    explicit EdgeChain(Wheel const& wheel) : _wheel(wheel) {
+        int next = wheel.GetNumSpokes();
+        for (int size : wheel.sizes) {
+            _firstOuterSides.push_back(next);
+            next += size - 2;
+        }
+        _weights.assign(static_cast<size_t>(next), 0.0);
+    }
 
     void AddSpoke(int spoke, double weight) {
         int const count = _wheel.GetNumSpokes();
@@ -112,7 +119,7 @@ public:
         int const size = _wheel.sizes[static_cast<size_t>(face)];
         if (m == 0) AddSpoke(face, weight);
         else if (m == size - 1) AddSpoke(face + 1, -weight);
-        else _weights[static_cast<size_t>(_wheel.GetFirstOuterSide(face) + m - 1)] += weight;
+        else _weights[static_cast<size_t>(_firstOuterSides[static_cast<size_t>(face)] + m - 1)] += weight;
     }
 
     void AddBoundary(Chain const& faces) {
@@ -146,6 +153,7 @@ public:
 
 private:
     Wheel const& _wheel;
+    std::vector<int> _firstOuterSides;  // per face, among the wheel's edges
     std::vector<double> _weights;
 };
 
@@ -193,12 +201,6 @@ EdgeChain MakeCatmarkEven(Wheel const& wheel, int i) {
 }
 
 }  // namespace
-
-int Wheel::GetFirstOuterSide(int face) const {
-    int place = GetNumSpokes();
-    for (int i = 0; i < face; ++i) place += sizes[static_cast<size_t>(i)] - 2;
-    return place;
-}
 
 double GetLoopWeight(int k) {
     double const c = 0.375 + 0.25 * std::cos(2.0 * kPi / k);

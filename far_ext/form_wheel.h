@@ -28,11 +28,10 @@ struct Wheel {
 
     int GetNumFaces() const { return static_cast<int>(sizes.size()); }
     int GetNumSpokes() const { return GetNumFaces() + (isInterior ? 0 : 1); }
-    /// Spokes outwards first, then the other sides of the faces, counter-clockwise.
-    int GetFirstOuterSide(int face) const;
 };
 
-/// What the forms around a vertex become: rows over the wheel's own edges (1-forms) and faces (2-forms).
+/// What the forms around a vertex become: rows over the wheel's own edges (1-forms: spokes outwards first, then the other
+/// sides of each face, counter-clockwise) and faces (2-forms).
 struct WheelRows {
     using Row = std::vector<std::pair<int, double>>;
 

@@ -47,9 +47,7 @@ LimitMatrix LimitMatrix::Build(Far::TopologyRefiner const& refiner, int level, L
 }
 
 LimitMatrix::Matrix LimitMatrix::AsMatrix() const {
-    int const size = _rows.GetNumRows();
-    return {size, size, static_cast<Eigen::Index>(_rows.indices.size()), _rows.offsets.data(), _rows.indices.data(),
-            _rows.weights.data()};
+    return far_ext::AsMatrix(_rows, _rows.GetNumRows());
 }
 
 }  // namespace limn::far_ext

@@ -2,9 +2,8 @@
 
 #include <vector>
 
-#include <Eigen/SparseCore>
-
 #include "far_ext/limit_row.h"
+#include "far_ext/sparse_matrix.h"
 
 namespace limn::far_ext {
 
@@ -33,7 +32,7 @@ public:
     std::vector<float> MakeFloatWeights() const { return {_rows.weights.begin(), _rows.weights.end()}; }
 
     /// The same arrays as a matrix; valid as long as this is.
-    using Matrix = Eigen::Map<Eigen::SparseMatrix<double, Eigen::RowMajor, int> const>;
+    using Matrix = SparseRowsView;
     Matrix AsMatrix() const;
 
     /// The diagonal of D: D A is symmetric on closed meshes.

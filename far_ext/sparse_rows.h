@@ -66,6 +66,13 @@ struct SparseRows {
         }
     }
 
+    /// The same for one number per point.
+    std::vector<double> Apply(std::vector<double> const& src) const {
+        std::vector<double> dst(static_cast<size_t>(GetNumRows()));
+        ApplyTo<1>(src.data(), dst.data(), 1);
+        return dst;
+    }
+
 private:
     template <int FixedLength>
     void ApplyTo(double const* src, double* dst, int anyLength) const {

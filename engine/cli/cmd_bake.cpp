@@ -5,10 +5,10 @@
 #include "engine/bake/audit.h"
 #include "engine/bake/bake.h"
 #include "engine/cli/cli.h"
+#include "engine/cli/parse_number.h"
 #include "engine/io/edge_values.h"
 #include "engine/options_text.h"
 #include "far_ext/error.h"
-#include "far_ext/form_operators.h"
 
 namespace limn::cli {
 
@@ -56,15 +56,6 @@ void ParseTiles(std::vector<std::string> const& texts, engine::BakeOptions& opti
                              : ParseInteger("--tiles", std::string_view(text).substr(dash + 1), first, 9999);
         for (int tile = first; tile <= last; ++tile) options.tiles.push_back(tile);
     }
-}
-
-double ParseNumber(std::string const& option, std::string_view text) {
-    double value = 0.0;
-    auto const [stop, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (code != std::errc() || stop != text.data() + text.size() || !std::isfinite(value)) {
-        throw Error(ErrorCode::BadOption, fmt::format("{}: '{}' is not a number", option, text));
-    }
-    return value;
 }
 
 engine::BakeOptions MakeOptions(Arguments const& a, CommonOptions const& common) {
@@ -157,7 +148,6 @@ int Run(Arguments const& a, Context& context) {
     for (std::string const& path : a.meshes) {
         auto const [scene, refiner] = context.Load(path);
         if (!a.fieldPath.empty()) {
-            far_ext::CheckForms(*refiner);
             options.field = engine::ReadEdgeValues(a.fieldPath, refiner->GetLevel(0));
             options.fieldHash = engine::Sha256OfFile(a.fieldPath);
         }

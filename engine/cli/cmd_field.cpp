@@ -1,9 +1,9 @@
-#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
+#include "engine/cli/parse_number.h"
 #include "engine/field.h"
 #include "engine/io/edge_values.h"
 #include "engine/io/mesh_writer.h"
@@ -24,23 +24,14 @@ struct Arguments {
     bool isBalanced = false;
 };
 
-double ParseNumber(std::string_view text, char const* option, std::string const& whole) {
-    double value = 0.0;
-    auto const [stop, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (code != std::errc() || stop != text.data() + text.size() || !std::isfinite(value)) {
-        throw Error(ErrorCode::BadOption, fmt::format("{} {}: '{}' is no number", option, whole, text));
-    }
-    return value;
-}
-
 /// "12" or "12:0.5".
 engine::FieldStrength ParseStrength(std::string const& text, char const* option, double sign) {
     size_t const colon = std::min(text.find(':'), text.size());
-    double const element = ParseNumber(std::string_view(text).substr(0, colon), option, text);
+    double const element = ParseNumber(option, std::string_view(text).substr(0, colon));
     if (element != std::floor(element) || std::abs(element) > 2147483647.0) {
         throw Error(ErrorCode::BadOption, fmt::format("{} {}: '{}' is no whole number", option, text, text.substr(0, colon)));
     }
-    double const strength = colon < text.size() ? ParseNumber(std::string_view(text).substr(colon + 1), option, text) : 1.0;
+    double const strength = colon < text.size() ? ParseNumber(option, std::string_view(text).substr(colon + 1)) : 1.0;
     return {static_cast<Index>(element), sign * strength};
 }
 
@@ -48,7 +39,7 @@ std::vector<double> ParseList(std::string const& text, char const* option) {
     std::vector<double> values;
     for (size_t start = 0; start <= text.size() && !text.empty();) {
         size_t const comma = std::min(text.find(',', start), text.size());
-        values.push_back(ParseNumber(std::string_view(text).substr(start, comma - start), option, text));
+        values.push_back(ParseNumber(option, std::string_view(text).substr(start, comma - start)));
         start = comma + 1;
     }
     return values;
@@ -95,9 +86,8 @@ std::string FormatVectors(char const* element, std::vector<std::array<double, 3>
 enum class Output { Mesh, Edges, Faces };
 
 Output FindOutput(std::string const& path) {
-    auto const endsWith = [&](std::string_view ending) { return path.size() > ending.size() && std::string_view(path).substr(path.size() - ending.size()) == ending; };
-    if (endsWith(".edges.csv")) return Output::Edges;
-    if (endsWith(".faces.csv")) return Output::Faces;
+    if (path.ends_with(".edges.csv")) return Output::Edges;
+    if (path.ends_with(".faces.csv")) return Output::Faces;
     std::string const ending = engine::GetEnding(path);
     if (ending == ".obj" || ending == ".ply") return Output::Mesh;
     throw Error(ErrorCode::BadOption, fmt::format("-o '{}': a field is written as .obj or .ply (and .vectors.csv beside it), .edges.csv or .faces.csv", path));
@@ -120,10 +110,13 @@ void AddToReport(nlohmann::json& report, engine::FieldAudit const& audit) {
 int Run(Arguments const& a, Context& context) {
     Output const output = FindOutput(a.output);
     auto const mesh = context.Load(a.mesh);
-    far_ext::CheckForms(*mesh.refiner);
     engine::FieldAudit audit;
     auto options = MakeOptions(a, mesh.refiner->GetLevel(0));
     options.hasVertexVectors = output == Output::Mesh || !a.picture.empty();
+    if (output != Output::Mesh && options.hasVertexVectors && a.levels == 0 && !far_ext::HasRefinedFaces(mesh.scene.cage)) {
+        throw Error(ErrorCode::BadOption, "--picture: arrows stand at vertices of a refined mesh, and the output is that of --levels 0; use --levels 1, or "
+                                          "leave --picture out");
+    }
     auto const field = engine::DesignField(mesh.scene, *mesh.refiner, options, audit);
     AddToReport(context.GetReport(), audit);
 
@@ -168,7 +161,7 @@ Verb AddField(CLI::App& app) {
     verb->add_flag("--balance", a->isBalanced, "spread what strengths do not add up to evenly over their component");
     auto* const picture = verb->add_option("--picture", a->picture, "also write a PNG: arrows along the field, on the mesh");
     verb->add_option("--view", a->view, "the picture's side that is seen, x,y,z (default 1,0.6,0.8)")->delimiter(',')->expected(3)->needs(picture);
-    verb->footer("Example:\n  limn field scenes/spot/spot.obj -o out/spot.field.obj --levels 2 --source 0 --sink 1000 --vortex 40 --vortex 900:-1");
+    verb->footer("Example:\n  limn field scenes/spot/spot.obj -o out/spot.field.obj --levels 2 --source 0 --sink 100 --vortex 40 --vortex 150:-1");
     return {verb, [a](Context& context) { return Run(*a, context); }};
 }
 

@@ -107,17 +107,12 @@ SurfaceNoise::Sampler::Sampler(SurfaceNoise const& noise) : _noise(noise), _tree
 
 void SurfaceNoise::Sampler::Evaluate(Index face, int domain, std::span<double const> s, std::span<double const> t,
                                      std::span<double> values) {
-    // Places in the order of refined faces, each of which is bound once.
-    _places.clear();
-    for (size_t i = 0; i < s.size(); ++i) _places.push_back({_noise._faces->Find(face, domain, s[i], t[i]), i});
-    std::sort(_places.begin(), _places.end(), [](Place const& a, Place const& b) {
-        return a.at.face != b.at.face ? a.at.face < b.at.face : a.sample < b.sample;
-    });
+    _noise._faces->FindSorted(face, domain, s, t, _places);
     Index bound = -1;
-    for (Place const& place : _places) {
+    for (auto const& place : _places) {
         if (place.at.face != bound) _tree.Bind(place.at.face);
         bound = place.at.face;
-        values[place.sample] = eval::EvaluateChannel(_tree, place.at.domain, place.at.s, place.at.t, 0);
+        values[place.index] = eval::EvaluateChannel(_tree, place.at.domain, place.at.s, place.at.t, 0);
     }
 }
 

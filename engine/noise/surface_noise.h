@@ -45,13 +45,9 @@ public:
                       std::span<double> values);
 
     private:
-        struct Place {
-            eval::RefinedFaces::Place at;
-            size_t sample;
-        };
         SurfaceNoise const& _noise;
         eval::FaceTree _tree;
-        std::vector<Place> _places;
+        std::vector<eval::RefinedFaces::Sample> _places;
     };
 
 private:

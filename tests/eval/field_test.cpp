@@ -276,11 +276,27 @@ TEST(FieldMatch, FindsTheFormBehindVectors) {
     }
 }
 
-/// Whether the limit of a 1-form exists at a vertex: forms.md 6, last paragraph.
+/// Faces between the first two sharp spokes of an interior vertex.
+int FindFirstFan(Far::TopologyLevel const& level, Index vertex) {
+    auto const edges = level.GetVertexEdges(vertex);
+    int first = -1;
+    for (int i = 0; i < edges.size(); ++i) {
+        if (level.GetEdgeSharpness(edges[i]) <= 0.0f) continue;
+        if (first >= 0) return i - first;
+        first = i;
+    }
+    return 0;
+}
+
+/// Whether the limit of a 1-form exists at a vertex: forms.md 6, last paragraph. On a crease, that of the fan from its first
+/// sharp spoke.
 bool HasLimit(Far::TopologyRefiner const& refiner, Far::TopologyLevel const& level, Index vertex) {
-    int const k = level.GetVertexFaces(vertex).size();
+    int k = level.GetVertexFaces(vertex).size();
     if (k == 0) return false;
-    if (!level.IsVertexBoundary(vertex)) return k > 2;
+    if (level.GetVertexRule(vertex) == Sdc::Crease::RULE_DART) return false;
+    bool const isCreased = level.GetVertexRule(vertex) != Sdc::Crease::RULE_SMOOTH;
+    if (!level.IsVertexBoundary(vertex) && !isCreased) return k > 2;
+    if (!level.IsVertexBoundary(vertex)) k = FindFirstFan(level, vertex);
     bool const isLoop = refiner.GetSchemeType() == Sdc::SCHEME_LOOP;
     if (level.GetVertexRule(vertex) != Sdc::Crease::RULE_CREASE) return k == 1;  // a corner of more faces may have parallel borders
     return isLoop ? k <= 5 : (k >= 2 && k <= 3);
@@ -288,6 +304,7 @@ bool HasLimit(Far::TopologyRefiner const& refiner, Far::TopologyLevel const& lev
 
 // The vector at a vertex is a limit: the next level gives the same, for any form.
 TEST(VertexCovectors, AreTheSameOnEveryLevel) {
+    int numOnCreases = 0;
     for (auto& [name, scene] : test::MakeFormMeshes()) {
         if (!scene.cage.creaseSharpness.empty() && scene.cage.creaseSharpness[0] < 10.0f) continue;
         if (name == "quad disk 2") continue;  // its points lie on a line
@@ -306,16 +323,23 @@ TEST(VertexCovectors, AreTheSameOnEveryLevel) {
             auto const level = refiner->GetLevel(1);
             for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
                 if (!HasLimit(*refiner, level, vertex)) continue;
-                auto const rule = level.GetVertexRule(vertex);
-                if (rule == Sdc::Crease::RULE_DART) continue;
                 auto const a = coarse.Find(vertex, form, positions), b = fine.Find(level.GetVertexChildVertex(vertex), next, nextPositions);
-                if (rule != Sdc::Crease::RULE_SMOOTH && !level.IsVertexBoundary(vertex)) continue;
+                numOnCreases += level.GetVertexRule(vertex) != Sdc::Crease::RULE_SMOOTH && !level.IsVertexBoundary(vertex);
                 Eigen::Vector3d const va = a.GetVector(), vb = b.GetVector();
                 EXPECT_LT((va - vb).norm(), 1e-8 * (1.0 + va.norm())) << name << ", vertex " << vertex;
                 EXPECT_LT((a.GetNormal() - b.GetNormal()).norm(), 1e-9) << name << ", vertex " << vertex;
+                if (!far_ext::IsSmoothInterior(level, vertex)) continue;
+                // forms.md 7.2: both masks are left eigenvectors, of S0 and of S1, with the same eigenvalue.
+                double const c = std::cos(2.0 * std::acos(-1.0) / level.GetVertexFaces(vertex).size());
+                double const lambda = scene.cage.scheme == Sdc::SCHEME_LOOP ? 0.375 + 0.25 * c : (5.0 + c + std::sqrt(0.5 * (1.0 + c)) * std::sqrt(2.0 * (9.0 + c))) / 16.0;
+                for (size_t t = 0; t < 2; ++t) {
+                    EXPECT_LT((b.tangents[t] - lambda * a.tangents[t]).norm(), 1e-10) << name << ", vertex " << vertex;
+                    EXPECT_NEAR(b.values[t], lambda * a.values[t], 1e-10) << name << ", vertex " << vertex;
+                }
             }
         }
     }
+    EXPECT_GT(numOnCreases, 50);
 }
 
 // The gradient of a coordinate is the axis less its part along the limit normal.

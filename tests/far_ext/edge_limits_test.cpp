@@ -1,6 +1,7 @@
 #include "far_ext/edge_limits.h"
 
 #include <gtest/gtest.h>
+#include <opensubdiv/sdc/crease.h>
 
 #include "far_ext/limit_matrix.h"
 #include "support/fit_meshes.h"
@@ -90,9 +91,18 @@ TEST_P(EdgeLimitsWith, HalvesAddUp) {
 INSTANTIATE_TEST_SUITE_P(Boundaries, EdgeLimitsWith,
                          testing::Values(static_cast<int>(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY), static_cast<int>(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER)));
 
-// What six refinements add up to, on a closed mesh with all kinds of valences: the limit but for what they leave.
+engine::Scene WithCrease(engine::Scene scene) {
+    for (size_t corner : {0u, 1u}) {  // two sides of the first face: darts at both ends
+        scene.cage.creaseVertexPairs.insert(scene.cage.creaseVertexPairs.end(), {scene.cage.faceVertices[corner], scene.cage.faceVertices[corner + 1]});
+        scene.cage.creaseSharpness.push_back(Sdc::Crease::SHARPNESS_INFINITE);
+    }
+    return scene;
+}
+
+// What six refinements add up to, closed, open and creased: the limit but for what they leave.
 TEST(EdgeLimits, AgreeWithRefining) {
-    for (auto const& scene : {test::MakeIrregularTriangles(5, 4, 2), test::MakeCube()}) {
+    for (auto const& scene : {test::MakeIrregularTriangles(5, 4, 2), test::MakeCube(), test::MakeLattice(2, 2, Sdc::SCHEME_LOOP), test::MakeGridWithHole(3, 3),
+                              WithCrease(test::MakeTorus(5, 4)), WithCrease(test::MakeIrregularTriangles(5, 4, 2))}) {
         auto const refiner = test::MakeRefiner(scene, 7);
         auto const level = refiner->GetLevel(1);
         auto const noise = test::MakeRandomValues(static_cast<size_t>(level.GetNumEdges()), 5);
@@ -126,6 +136,24 @@ TEST(EdgeLimits, AgreeWithRefining) {
             EXPECT_NEAR(Apply(limits.Find(edge), form), sum, 5e-3);
         }
     }
+}
+
+// Limits ask for sharpness that has faded; on the level where it has, they are there.
+TEST(EdgeLimits, SemiSharpFeaturesAreRefinedAway) {
+    engine::Scene scene = test::MakeTorus(5, 4);
+    scene.cage.creaseVertexPairs = {scene.cage.faceVertices[0], scene.cage.faceVertices[1]};
+    scene.cage.creaseSharpness = {1.5f};
+    auto const refiner = test::MakeRefiner(scene, 3);
+    Index const edge = refiner->GetLevel(0).FindEdge(scene.cage.faceVertices[0], scene.cage.faceVertices[1]);
+    EXPECT_NE(test::RefusalOf([&] { far_ext::EdgeLimits(*refiner, 0).Find(edge); }).find("semi-sharp"), std::string::npos);
+    far_ext::EdgeLimits faded(*refiner, 2);
+    for (Index fine = 0; fine < refiner->GetLevel(2).GetNumEdges(); ++fine) EXPECT_NO_THROW(faded.Find(fine));
+}
+
+TEST(EdgeLimits, LargeFansAreRefused) {
+    auto const refiner = test::MakeRefiner(test::MakeFan(80, Sdc::SCHEME_LOOP, 0.1, 0.0), 1);
+    Index const edge = refiner->GetLevel(0).GetVertexEdges(0)[0];
+    EXPECT_NE(test::RefusalOf([&] { far_ext::EdgeLimits(*refiner, 0).Find(edge); }).find("a fan of 80 faces"), std::string::npos);
 }
 
 }  // namespace

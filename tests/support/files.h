@@ -29,7 +29,8 @@ inline void WriteText(std::string const& path, std::string const& text) {
 /// A folder of its own, gone with its owner.
 class TemporaryFolder {
 public:
-    TemporaryFolder() : _path((std::filesystem::temp_directory_path() / "limn_test_XXXXXX").string()) {
+    /// mkdtemp puts a name of its own in place of the six letters.
+    TemporaryFolder() : _path((std::filesystem::temp_directory_path() / "limn_").string() + std::string(6, 'X')) {
         if (!::mkdtemp(_path.data())) throw std::runtime_error("no temporary folder");
     }
     ~TemporaryFolder() {
