@@ -9,6 +9,7 @@
 #include "engine/io/edge_values.h"
 #include "engine/io/mesh_reader.h"
 #include "engine/io/number_table.h"
+#include "far_ext/form_operators.h"
 #include "support/cli.h"
 #include "support/refined.h"
 
@@ -125,12 +126,23 @@ TEST_F(CliField, WhatIsWrongIsNamed) {
     refuse({cube, "--harmonic", "1"}, 3, "1 coefficients; the surface has 0 generators");
     refuse({cube, "--edges", folder.Write("e.csv", "v0,v1,value\n0,6,1\n")}, 3, "e.csv:2: there is no edge from vertex 0 to 6");
     refuse({cube, "--edges", folder.Write("e.csv", "v0,v1,value\n0,1,1\n1,0,1\n")}, 3, "comes twice, first in line 2");
+    refuse({cube, "--edges", folder.Write("e.csv", "v0,v1,value\n0,1,nan\n")}, 3, "e.csv:2: 'nan' in column value is no number");
+    refuse({cube, "--edges", folder.Write("e.csv", "v0,v1,value\n0,1,1e999\n")}, 3, "e.csv:2");
     refuse({cube, "--edges", folder.Write("e.csv", "a,b\n")}, 3, "e.csv:1: the header needs the columns v0,v1,value");
     refuse({cube, "--match", folder.Write("m.csv", "face,x,y,z\n6,1,0,0\n")}, 3, "m.csv:2: face 6 does not exist");
     refuse({cube, "--edges", folder / "missing.csv"}, 5, "missing.csv");
     EXPECT_EQ(Limn({"field", cube, "-o", folder / "b.obj", "--vortex", "1", "--balance"}).status, 0);
     EXPECT_EQ(Limn({"field", grid, "--scheme", "loop", "-o", folder / "n.obj", "--source", "1", "--at-boundary", "normal"}).status, 0);
     ExpectError(Limn({"field", cube, "-o", folder / "f.txt", "--vortex", "1"}), 2);
+}
+
+// What is over is taken off all faces of the component alike.
+TEST_F(CliField, BalanceSpreadsTheDefectEvenly) {
+    ASSERT_EQ(Limn({"field", cube, "-o", folder / "b.edges.csv", "--vortex", "1:3", "--balance"}).status, 0);
+    auto const refiner = test::MakeRefiner(engine::ReadMesh(cube), 0);
+    auto const level = refiner->GetLevel(0);
+    auto const curl = far_ext::BuildD1(level).Apply(engine::ReadEdgeValues(folder / "b.edges.csv", level));
+    for (size_t face = 0; face < curl.size(); ++face) EXPECT_NEAR(curl[face], face == 1 ? 2.5 : -0.5, 1e-12);
 }
 
 // spot has faces that are not quads: arrows would need another level than the edges that are written.

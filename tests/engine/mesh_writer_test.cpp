@@ -261,5 +261,23 @@ TEST(MeshWriter, RefinedMeshReadsBackWithItsTags) {
     EXPECT_EQ(back.cage.creaseSharpness, fine.cage.creaseSharpness);
 }
 
+// Normals go with the vertices, beside texture coordinates or alone; a reader that leaves them out reads the same mesh.
+TEST(MeshWriter, NormalsAreThoseOfTheVertices) {
+    for (bool hasUVs : {false, true}) {
+        Scene scene = hasUVs ? test::MakeTorus(5, 4) : test::MakeCube();
+        Scene const plain = scene;
+        for (Index vertex = 0; vertex < scene.cage.numVertices; ++vertex) scene.normals.insert(scene.normals.end(), {0.25 * vertex, 0.5, -1.0});
+        std::string const text = engine::FormatMesh("a.obj", scene, true, nullptr);
+        std::string const first = std::to_string(scene.cage.faceVertices[0] + 1);
+        std::string const uv = hasUVs ? std::to_string(scene.cage.fvarChannels[0].valueIndices[0] + 1) : "";
+        EXPECT_NE(text.find("\nf " + first + "/" + uv + "/" + first + " "), std::string::npos);
+        EXPECT_NE(text.find("\nvn 0.25 0.5 -1\n"), std::string::npos);
+        Scene const read = RoundTrip(scene, "a.obj", true);
+        EXPECT_EQ(read.cage.faceVertices, plain.cage.faceVertices);
+        ExpectSameBits(read.positions, plain.positions);
+        if (hasUVs) ExpectSameCornerUVs(read, plain);
+    }
+}
+
 }  // namespace
 }  // namespace limn
