@@ -131,7 +131,7 @@ int Run(Arguments const& a, Context& context) {
     } else {
         files.Add(a.output, FormatVectors("face", field.faceVectors, isDouble));
     }
-    if (!a.picture.empty()) engine::WriteArrowPicture(a.picture, field.mesh, field.vectors, {{a.view[0], a.view[1], a.view[2]}});
+    if (!a.picture.empty()) engine::WriteArrowPicture(files.Reserve(a.picture), field.mesh, field.vectors, {{a.view[0], a.view[1], a.view[2]}});
     files.Commit();
     for (std::string const& warning : warnings) context.GetJob().Warn(warning);
     return kDone;

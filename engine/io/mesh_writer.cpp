@@ -202,9 +202,14 @@ void MeshSequence::Add(std::string const& path, Scene const& scene, std::vector<
 }
 
 void MeshSequence::Add(std::string const& path, std::string const& bytes) {
-    _files.push_back(std::make_unique<AtomicFile>(path));
+    Reserve(path);
     _files.back()->Write(bytes);
+}
+
+std::string const& MeshSequence::Reserve(std::string const& path) {
+    _files.push_back(std::make_unique<AtomicFile>(path));
     _paths.push_back(path);
+    return _files.back()->GetTemporaryPath();
 }
 
 void MeshSequence::Commit() {

@@ -34,6 +34,9 @@ public:
     /// Writes another file under a temporary name. \throws Error Io
     void Add(std::string const& path, std::string const& bytes);
 
+    /// Makes room for a file that someone else writes. Returns its temporary name. \throws Error Io
+    std::string const& Reserve(std::string const& path);
+
     /// Gives all of them their names. \throws Error Io; then none is left
     void Commit();
 
