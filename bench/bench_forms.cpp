@@ -117,7 +117,7 @@ void RunGrowth(bool isLarge) {
 }  // namespace
 }  // namespace limn::bench
 
-/// --rounds N; --large: growth up to 10 M edges, too (10 GB)
+/// --rounds N; --large: growth up to 10 M edges, too (11 GB)
 int main(int argc, char** argv) {
     using namespace limn::bench;
     int const numRounds = GetNumRounds(argc, argv);
