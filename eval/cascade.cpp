@@ -1,0 +1,173 @@
+#include "eval/cascade.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "eval/cascade_solve.h"
+#include "far_ext/error.h"
+
+namespace limn::eval {
+
+namespace {
+
+using far_ext::CascadeLevel;
+
+constexpr double kLeastAngleRadians = 3.14159265358979323846 / 180.0, kLeastAreaRatio = 1e-8;
+
+template <class Scalar>
+CascadeRows<Scalar> Prolong(CascadeLevel const& level, CascadeRows<Scalar> const& coarse) {
+    CascadeRows<Scalar> fine(level.vertices.size());
+    ForEachRow(level.GetNumRows(), [&](Index row) {
+        int const begin = level.parentOffsets[row], end = level.parentOffsets[row + 1];
+        CascadeRow<Scalar> sum = coarse[level.parents[begin]];
+        for (int k = begin + 1; k < end; ++k) sum += coarse[level.parents[k]];
+        fine[row] = end - begin == 1 ? sum : CascadeRow<Scalar>(sum / static_cast<Scalar>(end - begin));
+    });
+    return fine;
+}
+
+}  // namespace
+
+template <class Scalar>
+Cascade<Scalar>::Cascade(std::span<double const> positions, std::span<double const> widths, CascadeOptions const& options)
+    : _options(options) {
+    bool const isLocal = options.width < 0.0;
+    if (isLocal != (widths.size() * 3 == positions.size()) && !positions.empty()) {
+        throw Error(ErrorCode::BadOption, "Cascade: give a width for all, or one per vertex");
+    }
+    if (std::is_same_v<Scalar, float> && options.solver != CascadeSolver::Jacobi) {
+        throw Error(ErrorCode::BadOption, "Cascade: in single precision only Jacobi sweeps are done");
+    }
+    for (size_t i = 0; i < positions.size() / 3; ++i) {
+        Scalar const h = isLocal ? static_cast<Scalar>(widths[i]) : Scalar(0);
+        auto const at = [&](size_t c) { return static_cast<Scalar>(positions[3 * i + c]); };
+        if (options.isGraph) {
+            _x0.emplace_back(Scalar(0), Scalar(0), at(2), h);
+            _plane.emplace_back(at(0), at(1), Scalar(0), h);
+        } else {
+            _x0.emplace_back(at(0), at(1), at(2), h);
+        }
+    }
+    _x = _x0;
+}
+
+template <class Scalar>
+bool Cascade<Scalar>::IsDegenerate(MetricQuality const& quality) const {
+    return !(quality.minAngleRadians >= _leastAngle && quality.areaRatio >= _leastAreaRatio);
+}
+
+template <class Scalar>
+CascadeStepReport Cascade<Scalar>::Step(CascadeLevel const& level, int iterations, std::span<double const> startWidths) {
+    bool const isFirst = _level == nullptr;
+    _level = &level;
+    _x0 = Prolong(level, _x0);
+    _x = Prolong(level, _x);
+    if (_options.isGraph) _plane = Prolong(level, _plane);
+    if (_isFrozen || !isFirst) _metric = Prolong(level, _metric);  // to fall back to
+    for (size_t row = 0; !startWidths.empty() && row < _x.size(); ++row) {
+        _x[row][3] = _x0[row][3] = static_cast<Scalar>(startWidths[level.vertices[row]]);
+        if (_options.isGraph) _plane[row][3] = _x0[row][3];
+    }
+    if (isFirst) _metric = _options.isGraph ? _plane : _x;
+    return Solve(iterations);
+}
+
+template <class Scalar>
+CascadeStepReport Cascade<Scalar>::Repeat(int iterations) {
+    return Solve(iterations);
+}
+
+template <class Scalar>
+CascadeStepReport Cascade<Scalar>::Solve(int iterations) {
+    CascadeLevel const& level = *_level;
+    CascadeStepReport report;
+    report.unknowns = level.numUnknowns;
+    Scalar const width = static_cast<Scalar>(_options.width);
+    CascadeRows<Scalar>& present = _options.isGraph ? _plane : _x;
+    if (_options.isGraph) {  // the plane's metric, with the widths as they are now
+        for (size_t row = 0; row < _x.size(); ++row) present[row][3] = _x[row][3];
+    }
+    MetricQuality const quality = BuildOperator(level, present, width, _operator);
+    if (_leastAngle < 0.0) {  // the first metric is that of the start mesh
+        _leastAngle = std::min(kLeastAngleRadians, quality.minAngleRadians / 2);
+        _leastAreaRatio = std::min(kLeastAreaRatio, quality.areaRatio / 4);
+    }
+    report.minAngleRadians = quality.minAngleRadians;
+    report.areaRatio = quality.areaRatio;
+    _isFrozen = _isFrozen || IsDegenerate(quality);
+    report.isMetricFrozen = _isFrozen;
+    if (_isFrozen) {
+        for (size_t row = 0; row < _x.size(); ++row) _metric[row][3] = _x[row][3];
+        BuildOperator(level, _metric, width, _operator);
+    } else {
+        _metric = present;
+    }
+    ForEachRow(level.GetNumRows(), [&](Index row) {  // what nothing moves, is where it was from the start
+        if (row >= level.numUnknowns || _operator.diagonals[row] == Scalar(0)) _x[row] = _x0[row];
+    });
+
+    if (_options.solver == CascadeSolver::Jacobi) {
+        _next = _x;
+        for (int sweep = 0; sweep < iterations; ++sweep) {
+            SweepJacobi(level, _operator, _x, _x0, _next);
+            _x.swap(_next);
+        }
+        report.sweeps = iterations;
+        report.residual = _options.measuresResidual ? MeasureResidual(level, _operator, _x, _x0)
+                                                    : std::numeric_limits<double>::quiet_NaN();
+        return report;
+    }
+    if constexpr (std::is_same_v<Scalar, double>) {
+        CascadeSolve const solve = _options.solver == CascadeSolver::Exact
+                                       ? SolveByCholesky(level, _operator, _x0, _x)
+                                       : SolveByConjugateGradients(level, _operator, _x0, _x, iterations, _options.tolerance);
+        report.sweeps = solve.iterations;
+        report.residual = solve.residual;
+        report.converged = solve.converged;
+    }
+    return report;
+}
+
+template <class Scalar>
+std::vector<double> Cascade<Scalar>::GetPublic(CascadeRows<Scalar> const& rows) const {
+    std::vector<double> values(3 * rows.size());
+    for (size_t row = 0; row < rows.size(); ++row) {
+        size_t const vertex = _level ? static_cast<size_t>(_level->vertices[row]) : row;
+        for (Eigen::Index c = 0; c < 3; ++c) {
+            bool const isInPlane = _options.isGraph && c < 2;
+            values[3 * vertex + static_cast<size_t>(c)] = static_cast<double>(isInPlane ? _plane[row][c] : rows[row][c]);
+        }
+    }
+    return values;
+}
+
+template <class Scalar>
+std::vector<double> Cascade<Scalar>::GetPositions() const {
+    return GetPublic(_x);
+}
+
+template <class Scalar>
+std::vector<double> Cascade<Scalar>::GetStartPositions() const {
+    return GetPublic(_x0);
+}
+
+template <class Scalar>
+std::vector<double> Cascade<Scalar>::GetWidths() const {
+    std::vector<double> widths(_x.size(), _options.width);
+    for (size_t row = 0; _options.width < 0.0 && row < _x.size(); ++row) {
+        widths[_level ? static_cast<size_t>(_level->vertices[row]) : row] = static_cast<double>(_x[row][3]);
+    }
+    return widths;
+}
+
+template class Cascade<float>;
+template class Cascade<double>;
+
+int CountSweeps(CascadeSolver solver, int finest, int levelsLeft, bool isBisection) {
+    double const exponent = (solver == CascadeSolver::Jacobi ? 2.0 : 1.5) * (isBisection ? 0.5 : 1.0);
+    return static_cast<int>(std::min(1e6, std::ceil(finest * std::exp2(exponent * levelsLeft) - 1e-9)));
+}
+
+}  // namespace limn::eval

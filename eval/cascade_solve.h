@@ -1,0 +1,34 @@
+#pragma once
+
+#include "eval/cascade_operator.h"
+
+namespace limn::eval {
+
+/// What became of solving a level.
+struct CascadeSolve {
+    int iterations = 0;
+    double residual = 0.0;  ///< |M (X0 - X) - L X| / |M (X0 - centroid)|: of positions, or of widths if that is more
+    bool converged = true;
+};
+
+/// |M (X0 - X) - L X| / |M (X0 - centroid)| over all unknowns.
+template <class Scalar>
+double MeasureResidual(far_ext::CascadeLevel const& level, CascadeOperator<Scalar> const& op, CascadeRows<Scalar> const& x,
+                       CascadeRows<Scalar> const& x0);
+
+/// Solves (M + L) X = M X0 by conjugate gradients with the diagonal as preconditioner, each coordinate with steps of its
+/// own. Rows on creases first: surface rows see them as given.
+///
+/// \param x              what to start from, and the result
+/// \param maxIterations  of each kind of rows
+CascadeSolve SolveByConjugateGradients(far_ext::CascadeLevel const& level, CascadeOperator<double> const& op,
+                                       CascadeRows<double> const& x0, CascadeRows<double>& x, int maxIterations,
+                                       double tolerance);
+
+/// The same by a sparse Cholesky factorisation: the reference.
+///
+/// \throws Error  BadMesh: an operator that is not positive definite
+CascadeSolve SolveByCholesky(far_ext::CascadeLevel const& level, CascadeOperator<double> const& op,
+                             CascadeRows<double> const& x0, CascadeRows<double>& x);
+
+}  // namespace limn::eval
