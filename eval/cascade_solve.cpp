@@ -50,6 +50,7 @@ public:
 
     CascadeSolve Run(DoubleLanes const& data, int maxIterations, double tolerance) {
         CascadeSolve result;
+        _isPreconditioned = tolerance > 0.0;
         DoubleLanes energy = DoubleLanes::Zero();
         DoubleLanes squares = Sum([&](Index row) {
             _residual[At(row)] = FindResidual(_level, _op, _x.data(), _x0.data(), row) * IsMoved(row);
@@ -82,7 +83,9 @@ public:
 private:
     size_t At(Index row) const { return static_cast<size_t>(row - _begin); }
     double IsMoved(Index row) const { return _op.diagonals[row] > 0.0 ? 1.0 : 0.0; }
-    double GetInverse(Index row) const { return _op.diagonals[row] > 0.0 ? 1.0 / _op.diagonals[row] : 0.0; }
+    double GetInverse(Index row) const {
+        return !_isPreconditioned ? IsMoved(row) : _op.diagonals[row] > 0.0 ? 1.0 / _op.diagonals[row] : 0.0;
+    }
 
     template <class Term>
     DoubleLanes Sum(Term const& term) const {
@@ -104,6 +107,7 @@ private:
     CascadeRows<double> const& _x0;
     CascadeRows<double>& _x;
     Index _begin, _end;
+    bool _isPreconditioned = true;
     CascadeRows<double> _residual, _direction, _image;  // directions of rows that nothing moves stay 0
 };
 

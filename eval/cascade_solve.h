@@ -16,9 +16,11 @@ template <class Scalar>
 double MeasureResidual(far_ext::CascadeLevel const& level, CascadeOperator<Scalar> const& op, CascadeRows<Scalar> const& x,
                        CascadeRows<Scalar> const& x0);
 
-/// Solves (M + L) X = M X0 by conjugate gradients with the diagonal as preconditioner, each coordinate with steps of its
-/// own. Rows on creases first: surface rows see them as given.
+/// Solves (M + L) X = M X0 by conjugate gradients, each coordinate with steps of its own. Rows on creases first: surface
+/// rows see them as given.
 ///
+/// \param tolerance      of the residual. Above 0 the diagonal is the preconditioner; at 0 all iterations are done without
+///                       one, as the a-priori counts of [Diewald02] are meant
 /// \param x              what to start from, and the result
 /// \param maxIterations  of each kind of rows
 CascadeSolve SolveByConjugateGradients(far_ext::CascadeLevel const& level, CascadeOperator<double> const& op,

@@ -1,0 +1,255 @@
+#include "eval/cascade.h"
+
+#include <list>
+
+#include <gtest/gtest.h>
+#include <opensubdiv/osd/cpuEvaluator.h>
+
+#include "far_ext/bisection.h"
+#include "far_ext/cascade_stencils.h"
+#include "support/refined.h"
+
+namespace limn {
+namespace {
+
+using eval::CascadeOptions;
+using eval::CascadeSolver;
+using far_ext::BoundaryRule;
+using far_ext::CascadeLevel;
+
+engine::Scene LoadMesh(std::string const& name) {
+    engine::Scene scene = test::LoadData("cascade/" + name + ".obj");
+    scene.cage.scheme = Sdc::SCHEME_LOOP;
+    return scene;
+}
+
+std::vector<double> LoadReference(std::string const& name) {
+    Eigen::MatrixXd const points = test::LoadGoldenPoints("cascade/" + name + ".obj");
+    std::vector<double> flat;
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+        for (Eigen::Index c = 0; c < 3; ++c) flat.push_back(points(i, c));
+    }
+    return flat;
+}
+
+struct EdgeLengths {
+    double mean = 0.0;
+    std::vector<double> atVertices;  // mean of those at each vertex
+};
+
+EdgeLengths MeasureEdges(engine::Scene const& scene) {
+    auto const refiner = test::MakeRefiner(scene, 0);
+    auto const level = refiner->GetLevel(0);
+    EdgeLengths lengths;
+    std::vector<double> counts(static_cast<size_t>(level.GetNumVertices()), 0.0);
+    lengths.atVertices.assign(counts.size(), 0.0);
+    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+        auto const ends = level.GetEdgeVertices(edge);
+        double const* const p = &scene.positions[3 * static_cast<size_t>(ends[0])];
+        double const* const q = &scene.positions[3 * static_cast<size_t>(ends[1])];
+        double const length = std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+        lengths.mean += length / level.GetNumEdges();
+        for (Index end : {ends[0], ends[1]}) {
+            lengths.atVertices[static_cast<size_t>(end)] += length;
+            counts[static_cast<size_t>(end)] += 1.0;
+        }
+    }
+    for (size_t i = 0; i < counts.size(); ++i) lengths.atVertices[i] /= counts[i];
+    return lengths;
+}
+
+std::list<CascadeLevel> QuarterLevels(engine::Scene const& scene, int count, BoundaryRule rule) {
+    auto const refiner = test::MakeRefiner(scene, count);
+    std::list<CascadeLevel> levels;
+    for (int k = 1; k <= count; ++k) {
+        std::vector<Index> const coarse = k == 1 ? std::vector<Index>{} : levels.back().vertices;
+        levels.push_back(far_ext::BuildCascadeLevel(far_ext::MakeCascadeMesh(*refiner, k), coarse, rule));
+    }
+    return levels;
+}
+
+std::list<CascadeLevel> BisectLevels(engine::Scene const& scene, int count, BoundaryRule rule) {
+    far_ext::Bisection bisection(scene.cage.numVertices, scene.cage.faceVertices, scene.positions, {}, {});
+    std::list<CascadeLevel> levels;
+    for (int k = 1; k <= count; ++k) {
+        std::vector<Index> const coarse = k == 1 ? std::vector<Index>{} : levels.back().vertices;
+        levels.push_back(far_ext::BuildCascadeLevel(bisection.Refine(), coarse, rule));
+    }
+    return levels;
+}
+
+std::vector<double> Filter(engine::Scene const& scene, std::list<CascadeLevel> const& levels, CascadeOptions const& options,
+                        std::vector<double> const& widths = {}, int finestSweeps = 1) {
+    eval::Cascade<double> cascade(scene.positions, widths, options);
+    int left = static_cast<int>(levels.size());
+    for (CascadeLevel const& level : levels) cascade.Step(level, eval::CountSweeps(options.solver, finestSweeps, --left, false));
+    return cascade.GetPositions();
+}
+
+struct Golden {
+    char const* mesh;
+    int levels;
+};
+
+class CascadeGolden : public testing::TestWithParam<Golden> {
+protected:
+    std::string Name(std::string const& what, int count) const {
+        return std::string(GetParam().mesh) + "_cas_" + what + "_L" + std::to_string(count);
+    }
+    engine::Scene scene = LoadMesh(GetParam().mesh);
+    EdgeLengths lengths = MeasureEdges(scene);
+    double box = test::BoxDiagonal(scene.positions);
+    std::list<CascadeLevel> levels = QuarterLevels(scene, GetParam().levels, BoundaryRule::Natural);
+    double Difference(std::vector<double> const& points, std::string const& what) const {
+        return test::LargestDifference(points, LoadReference(Name(what, GetParam().levels))) / box;
+    }
+};
+
+TEST_P(CascadeGolden, ExactSolves) {
+    EXPECT_LT(Difference(Filter(scene, levels, {.solver = CascadeSolver::Exact, .width = 0.12 * lengths.mean}), "exact"), 1e-8);
+}
+
+TEST_P(CascadeGolden, JacobiSweepsByTheAPrioriRule) {
+    EXPECT_LT(Difference(Filter(scene, levels, {.solver = CascadeSolver::Jacobi, .width = 0.12 * lengths.mean}), "jacobi"), 1e-10);
+}
+
+TEST_P(CascadeGolden, ConjugateGradientsByTheAPrioriRule) {
+    EXPECT_LT(Difference(Filter(scene, levels, {.solver = CascadeSolver::ConjugateGradients, .width = 0.12 * lengths.mean}), "cg"), 1e-6);
+}
+
+TEST_P(CascadeGolden, LocalWidths) {
+    std::vector<double> widths;
+    for (double length : lengths.atVertices) widths.push_back(0.12 * length);
+    EXPECT_LT(Difference(Filter(scene, levels, {.solver = CascadeSolver::Exact}, widths), "local12"), 1e-8);
+}
+
+TEST_P(CascadeGolden, Bisection) {
+    auto const halves = BisectLevels(scene, 4, BoundaryRule::Natural);
+    auto const points = Filter(scene, halves, {.solver = CascadeSolver::Exact, .width = 0.12 * lengths.mean});
+    EXPECT_LT(test::LargestDifference(points, LoadReference(Name("bisect", 4))) / box, 1e-8);
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, CascadeGolden, testing::Values(Golden{"icosa", 3}, Golden{"torustri", 2}, Golden{"gridholetri", 3}),
+                         [](auto const& golden) { return std::string(golden.param.mesh); });
+
+TEST(Cascade, FixedBoundaryMeetsItsReference) {
+    auto const scene = LoadMesh("gridholetri");
+    double const width = 0.12 * MeasureEdges(scene).mean;
+    auto const points = Filter(scene, QuarterLevels(scene, 3, BoundaryRule::Fixed), {.solver = CascadeSolver::Exact, .width = width});
+    EXPECT_LT(test::LargestDifference(points, LoadReference("gridholetri_cas_fix_L3")) / test::BoxDiagonal(scene.positions), 1e-8);
+}
+
+// Residual mode: surface.md 3.5 measured 2.5e-7 of the box at most.
+TEST(Cascade, ConjugateGradientsToAResidualAreNearTheExactOnes) {
+    auto const scene = LoadMesh("icosa");
+    auto const levels = QuarterLevels(scene, 4, BoundaryRule::Fixed);
+    double const width = 0.15 * MeasureEdges(scene).mean;
+    auto const exact = Filter(scene, levels, {.solver = CascadeSolver::Exact, .width = width});
+    eval::Cascade<double> cascade(scene.positions, {}, {.tolerance = 1e-6, .width = width});
+    for (auto const& level : levels) EXPECT_TRUE(cascade.Step(level, 1000).converged);
+    EXPECT_LT(test::LargestDifference(cascade.GetPositions(), exact) / test::BoxDiagonal(scene.positions), 1e-6);
+}
+
+// On a sphere the fixed point is r = (r0 + sqrt(r0^2 - 4 sigma^2)) / 2; what is listed is measured on the polyhedron.
+TEST(Cascade, ASphereShrinksToItsFixedPoint) {
+    auto const icosa = LoadMesh("icosa");
+    auto const base = test::MakeRefiner(icosa, 3);
+    std::vector<std::vector<Index>> faces;
+    for (Index face = 0; face < base->GetLevel(3).GetNumFaces(); ++face) {
+        auto const f = base->GetLevel(3).GetFaceVertices(face);
+        faces.push_back({f[0], f[1], f[2]});
+    }
+    std::vector<double> points = icosa.positions;  // every level moved out to the sphere
+    for (int k = 1; k <= 3; ++k) {
+        auto const mesh = far_ext::MakeCascadeMesh(*base, k);
+        std::vector<double> fine(3 * static_cast<size_t>(mesh.numVertices), 0.0);
+        for (size_t i = 0; i < fine.size() / 3; ++i) {
+            for (int j = mesh.parentOffsets[i]; j < mesh.parentOffsets[i + 1]; ++j) {
+                for (size_t c = 0; c < 3; ++c) fine[3 * i + c] += points[3 * static_cast<size_t>(mesh.parents[j]) + c];
+            }
+            double const length = std::hypot(fine[3 * i], fine[3 * i + 1], fine[3 * i + 2]);
+            for (size_t c = 0; c < 3; ++c) fine[3 * i + c] /= length;
+        }
+        points = fine;
+    }
+    auto const sphere = test::MakeScene(points, faces, Sdc::SCHEME_LOOP);
+    auto const levels = QuarterLevels(sphere, 2, BoundaryRule::Fixed);
+    auto const meanRadius = [](std::vector<double> const& p) {
+        double sum = 0.0;
+        for (size_t i = 0; i < p.size(); i += 3) sum += std::hypot(p[i], p[i + 1], p[i + 2]);
+        return 3.0 * sum / static_cast<double>(p.size());
+    };
+    double const widths[] = {0.1, 0.25, 0.4}, twoLevels[] = {0.98721, 0.93124, 0.81972}, settled[] = {0.98720, 0.93012, 0.79640};
+    for (size_t i = 0; i < 3; ++i) {
+        eval::Cascade<double> cascade(sphere.positions, {}, {.tolerance = 1e-10, .width = widths[i]});
+        for (auto const& level : levels) cascade.Step(level, 1000);
+        EXPECT_NEAR(meanRadius(cascade.GetPositions()), twoLevels[i], 1e-3);
+        for (int repeat = 0; repeat < 30; ++repeat) cascade.Repeat(1000);
+        EXPECT_NEAR(meanRadius(cascade.GetPositions()), settled[i], 1e-3);
+    }
+}
+
+// The sweep as a kernel and as a table that OpenSubdiv evaluates.
+TEST(Cascade, ASweepIsItsStencilTable) {
+    for (bool isQuads : {false, true}) {
+        auto scene = isQuads ? test::MakeTorus(9, 7) : LoadMesh("gridholetri");
+        auto const levels = QuarterLevels(scene, 2, BoundaryRule::Fixed);
+        double const width = 0.2 * MeasureEdges(scene).mean;
+        CascadeOptions const options{.solver = CascadeSolver::Jacobi, .width = width};
+        eval::Cascade<float> cascade(scene.positions, {}, options);
+        for (auto const& level : levels) cascade.Step(level, 2);
+        auto const& level = levels.back();
+        auto const& op = cascade.GetOperator();
+        auto swept = cascade.GetRows();
+        eval::SweepJacobi(level, op, cascade.GetRows(), cascade.GetStartRows(), swept);
+        std::vector<float> scales;
+        for (float diagonal : op.diagonals) scales.push_back(diagonal > 0 ? 0.75f / diagonal : 0.0f);
+        far_ext::CascadeStencils table(level);
+        table.SetWeights(level, op.edges, op.masses, scales);
+        auto source = cascade.GetRows();
+        source.insert(source.end(), cascade.GetStartRows().begin(), cascade.GetStartRows().end());
+        auto evaluated = cascade.GetRows();
+        OpenSubdiv::Osd::BufferDescriptor const four(0, 4, 4);
+        OpenSubdiv::Osd::CpuEvaluator::EvalStencils(source[0].data(), four, evaluated[0].data(), four, table.GetSizes().data(),
+                                                    table.GetOffsets().data(), table.GetControlIndices().data(),
+                                                    table.GetWeights().data(), 0, table.GetNumStencils());
+        double const box = test::BoxDiagonal(scene.positions);
+        for (size_t row = 0; row < swept.size(); ++row) {
+            EXPECT_LT((swept[row] - evaluated[row]).abs().maxCoeff(), 1e-6 * box);
+        }
+    }
+}
+
+// Where sigma is 0 on a triangle nothing moves, to the bit, and NaN comes from nowhere.
+TEST(Cascade, WithoutWidthNothingMoves) {
+    auto const scene = LoadMesh("torustri");
+    std::vector<double> widths(static_cast<size_t>(scene.cage.numVertices), 0.0);
+    auto const levels = QuarterLevels(scene, 2, BoundaryRule::Fixed);
+    widths[0] = 0.1;
+    for (auto solver : {CascadeSolver::Exact, CascadeSolver::ConjugateGradients, CascadeSolver::Jacobi}) {
+        eval::Cascade<double> cascade(scene.positions, widths, {.solver = solver, .iterations = 20, .width = -1.0});
+        for (auto const& level : levels) cascade.Step(level, 20);
+        auto const points = cascade.GetPositions(), start = cascade.GetStartPositions(), found = cascade.GetWidths();
+        size_t numStill = 0, numMoved = 0;
+        for (size_t i = 0; i < points.size(); i += 3) {
+            bool const isStill = points[i] == start[i] && points[i + 1] == start[i + 1] && points[i + 2] == start[i + 2];
+            (isStill ? numStill : numMoved) += 1;
+            EXPECT_TRUE(isStill || found[i / 3] != 0.0) << "vertex " << i / 3;
+            EXPECT_TRUE(std::isfinite(points[i] + points[i + 1] + points[i + 2]));
+        }
+        EXPECT_GT(numStill, points.size() / 3 * 8 / 10);
+        EXPECT_GT(numMoved, 10u);
+    }
+}
+
+// Far above what an icosahedron carries it collapses; the metric may freeze, numbers stay numbers.
+TEST(Cascade, ACollapseStaysFinite) {
+    auto const scene = LoadMesh("icosa");
+    auto const levels = QuarterLevels(scene, 4, BoundaryRule::Fixed);
+    eval::Cascade<double> cascade(scene.positions, {}, {.tolerance = 1e-6, .width = MeasureEdges(scene).mean});
+    for (auto const& level : levels) cascade.Step(level, 1000);
+    for (double value : cascade.GetPositions()) EXPECT_TRUE(std::isfinite(value));
+}
+
+}  // namespace
+}  // namespace limn
