@@ -2,6 +2,7 @@
 
 #include <list>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 #include <opensubdiv/osd/cpuEvaluator.h>
 
@@ -186,6 +187,51 @@ TEST(Cascade, ASphereShrinksToItsFixedPoint) {
         EXPECT_NEAR(meanRadius(cascade.GetPositions()), twoLevels[i], 1e-3);
         for (int repeat = 0; repeat < 30; ++repeat) cascade.Repeat(1000);
         EXPECT_NEAR(meanRadius(cascade.GetPositions()), settled[i], 1e-3);
+    }
+}
+
+// M and L against the finite elements they are: m_T = |T| / 3 and l_ij = a e_i . e_j / (4 |T|), triangle after triangle; a
+// quad stands for the four triangles of its two diagonals, each half.
+TEST(Cascade, TheOperatorIsAssembledFromTriangles) {
+    for (bool isQuads : {false, true}) {
+        auto scene = isQuads ? test::MakeTorus(9, 7) : LoadMesh("torustri");
+        auto const refiner = test::MakeRefiner(scene, 1);
+        auto const mesh = far_ext::MakeCascadeMesh(*refiner, 1);
+        auto const level = far_ext::BuildCascadeLevel(mesh, {}, BoundaryRule::Fixed);
+        double const sigma = 0.3, a = sigma * sigma / 2;
+        eval::Cascade<double> cascade(scene.positions, {}, {.iterations = 0, .width = sigma});
+        cascade.Step(level, 0);
+        auto const points = cascade.GetStartPositions();
+        Eigen::MatrixXd L = Eigen::MatrixXd::Zero(mesh.numVertices, mesh.numVertices);
+        Eigen::VectorXd M = Eigen::VectorXd::Zero(mesh.numVertices);
+        auto const at = [&](Index i) { return Eigen::Vector3d(points[3 * static_cast<size_t>(i)], points[3 * static_cast<size_t>(i) + 1], points[3 * static_cast<size_t>(i) + 2]); };
+        auto const add = [&](std::array<Index, 3> const& t, double share) {
+            double const area = 0.5 * (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])).norm();
+            auto const edge = [&](size_t i) -> Eigen::Vector3d { return at(t[(i + 2) % 3]) - at(t[(i + 1) % 3]); };
+            for (size_t i = 0; i < 3; ++i) {
+                M[t[i]] += share * area / 3;
+                for (size_t j = 0; j < 3; ++j) L(t[i], t[j]) += share * a * edge(i).dot(edge(j)) / (4 * area);
+            }
+        };
+        for (Index face = 0; face < mesh.GetNumFaces(); ++face) {
+            Index const* const f = &mesh.faces[static_cast<size_t>(face * mesh.faceSize)];
+            if (isQuads) {
+                for (size_t k = 0; k < 4; ++k) add({f[k], f[(k + 1) % 4], f[(k + 2) % 4]}, 0.5);
+            } else {
+                add({f[0], f[1], f[2]}, 1.0);
+            }
+        }
+        auto const& op = cascade.GetOperator();
+        ASSERT_EQ(level.numUnknowns, mesh.numVertices);
+        for (Index row = 0; row < level.numUnknowns; ++row) {
+            Index const vertex = level.vertices[row];
+            EXPECT_NEAR(op.masses[row], M[vertex], 1e-12);
+            EXPECT_NEAR(op.diagonals[row], M[vertex] + L(vertex, vertex), 1e-12);
+            Eigen::VectorXd expected = -L.row(vertex).transpose();
+            expected[vertex] = 0.0;
+            for (int k = level.offsets[row]; k < level.offsets[row + 1]; ++k) expected[level.vertices[level.neighbours[k]]] -= op.edges[k];
+            EXPECT_LT(expected.cwiseAbs().maxCoeff(), 1e-12);
+        }
     }
 }
 
