@@ -194,6 +194,19 @@ void WriteValuePicture(std::string const& path, Scene const& scene, std::string 
     picture.Write(path, true);
 }
 
+void WriteShadedPicture(std::string const& path, Scene const& scene, PictureView const& view) {
+    MeshPicture picture(scene, view);
+    // A light above the eye's right shoulder; what it does not reach is not black.
+    Vector const eye = picture.GetDirectionToEye(), light = (eye + 0.5 * picture.GetUp() + 0.4 * picture.GetUp().cross(eye)).normalized();
+    auto const at = [&](Index vertex) { return Vector(&scene.positions[3 * static_cast<size_t>(vertex)]); };
+    picture.Draw([&](Vector const&, std::array<Index, 3> const& corners) {
+        Vector normal = (at(corners[1]) - at(corners[0])).cross(at(corners[2]) - at(corners[0])).normalized();
+        if (normal.dot(eye) < 0.0) normal = -normal;
+        return 0.25 + 0.7 * std::max(0.0, normal.dot(light));
+    });
+    picture.WriteGrey(path);
+}
+
 void WriteHighlightPicture(std::string const& path, Scene const& scene, PictureView const& view) {
     auto const refiner = far_ext::CreateRefiner(scene.cage);
     auto const normals = eval::FindAngleNormals(refiner->GetLevel(0), scene.positions);

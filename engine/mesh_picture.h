@@ -20,6 +20,11 @@ struct PictureView {
 /// \throws Error  BadOption: no such primvar, or a view without a direction.  Io
 void WriteValuePicture(std::string const& path, Scene const& scene, std::string const& primvar, PictureView const& view);
 
+/// Draws a mesh flat shaded, each face by its own normal, and writes it as PNG.
+///
+/// \throws Error  as above
+void WriteShadedPicture(std::string const& path, Scene const& scene, PictureView const& view);
+
 /// Draws highlight lines, the reflections of parallel strip lights, and writes them as PNG: where they kink, normals
 /// do; where they turn sharply, curvature jumps.
 ///

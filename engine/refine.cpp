@@ -43,18 +43,6 @@ Primvar RefinePrimvar(Far::TopologyRefiner const& refiner, Primvar const& primva
     return fine;
 }
 
-/// The base face of every face of the last level.
-std::vector<Index> FindBaseFaces(Far::TopologyRefiner const& refiner) {
-    int const last = refiner.GetMaxLevel();
-    std::vector<Index> base(static_cast<size_t>(refiner.GetLevel(last).GetNumFaces()));
-    for (Index face = 0; face < static_cast<Index>(base.size()); ++face) {
-        Index at = face;
-        for (int level = last; level > 0; --level) at = refiner.GetLevel(level).GetFaceParentFace(at);
-        base[face] = at;
-    }
-    return base;
-}
-
 /// Moves refined vertices to the limit. Vertices without a face that has one stay.
 void MoveToLimit(Scene& fine) {
     auto const refiner = far_ext::CreateRefiner(fine.cage);
@@ -81,6 +69,24 @@ std::unique_ptr<Far::TopologyRefiner> MakeUniformRefiner(Scene const& scene, int
     return refiner;
 }
 
+std::vector<Index> FindBaseFaces(Far::TopologyRefiner const& refiner, int level) {
+    std::vector<Index> base(static_cast<size_t>(refiner.GetLevel(level).GetNumFaces()));
+    for (Index face = 0; face < static_cast<Index>(base.size()); ++face) {
+        Index at = face;
+        for (int k = level; k > 0; --k) at = refiner.GetLevel(k).GetFaceParentFace(at);
+        base[face] = at;
+    }
+    return base;
+}
+
+void InheritGroups(Scene const& scene, std::vector<Index> const& baseFaces, Scene& fine) {
+    for (size_t kind = 0; kind < 3; ++kind) {
+        fine.groups[kind].names = scene.groups[kind].names;
+        if (scene.groups[kind].faceGroup.empty()) continue;
+        for (Index face : baseFaces) fine.groups[kind].faceGroup.push_back(scene.groups[kind].faceGroup[face]);
+    }
+}
+
 Scene RefineAllButPositions(Scene const& scene, Far::TopologyRefiner const& refiner) {
     Scene fine;
     fine.path = scene.path;
@@ -88,12 +94,7 @@ Scene RefineAllButPositions(Scene const& scene, Far::TopologyRefiner const& refi
     fine.cage = far_ext::MakeRefinedCage(refiner, scene.cage);
     if (scene.HasUVs()) fine.uvs = RefineToLast<2>(refiner, scene.uvs, 0);
     for (Primvar const& primvar : scene.primvars) fine.primvars.push_back(RefinePrimvar(refiner, primvar));
-    std::vector<Index> const base = FindBaseFaces(refiner);
-    for (size_t kind = 0; kind < 3; ++kind) {
-        fine.groups[kind].names = scene.groups[kind].names;
-        if (scene.groups[kind].faceGroup.empty()) continue;
-        for (Index face : base) fine.groups[kind].faceGroup.push_back(scene.groups[kind].faceGroup[face]);
-    }
+    InheritGroups(scene, FindBaseFaces(refiner, refiner.GetMaxLevel()), fine);
     return fine;
 }
 

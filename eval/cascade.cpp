@@ -59,24 +59,27 @@ bool Cascade<Scalar>::IsDegenerate(MetricQuality const& quality) const {
 }
 
 template <class Scalar>
-CascadeStepReport Cascade<Scalar>::Step(CascadeLevel const& level, int iterations, std::span<double const> startWidths) {
+CascadeStepReport Cascade<Scalar>::Step(CascadeLevel const& level, int iterations, std::span<double const> givenWidths) {
     bool const isFirst = _level == nullptr;
     _level = &level;
     _x0 = Prolong(level, _x0);
     _x = Prolong(level, _x);
     if (_options.isGraph) _plane = Prolong(level, _plane);
     if (_isFrozen || !isFirst) _metric = Prolong(level, _metric);  // to fall back to
-    for (size_t row = 0; !startWidths.empty() && row < _x.size(); ++row) {
-        _x[row][3] = _x0[row][3] = static_cast<Scalar>(startWidths[level.vertices[row]]);
+    _hasGivenWidths = !givenWidths.empty();
+    for (size_t row = 0; _hasGivenWidths && row < _x.size(); ++row) {
+        _x[row][3] = _x0[row][3] = static_cast<Scalar>(givenWidths[level.vertices[row]]);
         if (_options.isGraph) _plane[row][3] = _x0[row][3];
     }
     if (isFirst) _metric = _options.isGraph ? _plane : _x;
-    return Solve(iterations);
+    return Repeat(iterations);
 }
 
 template <class Scalar>
 CascadeStepReport Cascade<Scalar>::Repeat(int iterations) {
-    return Solve(iterations);
+    CascadeStepReport const report = Solve(iterations);
+    if (_hasGivenWidths) ForEachRow(_level->GetNumRows(), [&](Index row) { _x[row][3] = _x0[row][3]; });
+    return report;
 }
 
 template <class Scalar>
@@ -125,7 +128,7 @@ CascadeStepReport Cascade<Scalar>::Solve(int iterations) {
                                        : SolveByConjugateGradients(level, _operator, _x0, _x, iterations, _options.tolerance);
         report.sweeps = solve.iterations;
         report.residual = solve.residual;
-        report.converged = solve.converged;
+        report.converged = solve.converged || _options.tolerance == 0.0;  // a count was asked for, and done
     }
     return report;
 }
@@ -160,6 +163,16 @@ std::vector<double> Cascade<Scalar>::GetWidths() const {
         widths[_level ? static_cast<size_t>(_level->vertices[row]) : row] = static_cast<double>(_x[row][3]);
     }
     return widths;
+}
+
+template <class Scalar>
+void Cascade<Scalar>::SetPositions(std::span<double const> positions) {
+    for (size_t row = 0; row < _x.size(); ++row) {
+        size_t const vertex = _level ? static_cast<size_t>(_level->vertices[row]) : row;
+        for (Eigen::Index c = _options.isGraph ? 2 : 0; c < 3; ++c) {
+            _x[row][c] = static_cast<Scalar>(positions[3 * vertex + static_cast<size_t>(c)]);
+        }
+    }
 }
 
 template class Cascade<float>;

@@ -46,8 +46,9 @@ public:
 
     /// Goes to the next level. \param level  kept by reference until the next call
     ///
-    /// \param startWidths  per vertex of the level: replace the start mesh's and the filtered widths; may be empty
-    CascadeStepReport Step(far_ext::CascadeLevel const& level, int iterations, std::span<double const> startWidths = {});
+    /// \param givenWidths  sigma per vertex of the level: used as they are, and not filtered. Empty: those of the
+    ///                     level before, interpolated, and solved along with the positions
+    CascadeStepReport Step(far_ext::CascadeLevel const& level, int iterations, std::span<double const> givenWidths = {});
 
     /// Solves once more on the same level, with the metric of the present surface.
     CascadeStepReport Repeat(int iterations);
@@ -56,6 +57,9 @@ public:
     std::vector<double> GetPositions() const;
     std::vector<double> GetStartPositions() const;
     std::vector<double> GetWidths() const;
+
+    /// Replaces the surface, e.g. by one of the right volume: the next level starts there. \param positions  as GetPositions
+    void SetPositions(std::span<double const> positions);
 
     // Rows of the level, for those that go on from them.
     CascadeRows<Scalar> const& GetRows() const { return _x; }
@@ -74,7 +78,7 @@ private:
     CascadeRows<Scalar> _next;    // the other buffer of sweeps
     CascadeRows<Scalar> _plane;   // of a graph: x and y
     CascadeOperator<Scalar> _operator;
-    bool _isFrozen = false;
+    bool _isFrozen = false, _hasGivenWidths = false;
     double _leastAngle = -1.0, _leastAreaRatio = 0.0;
 };
 

@@ -46,24 +46,44 @@ int FindLongestEdge(Index const* face, std::span<double const> positions) {
     return longest;
 }
 
+/// A corner of a triangle: its vertex and face-varying value.
+struct Corner {
+    Index vertex, value;
+};
+
 /// What a pass makes.
 struct Halves {
     std::vector<Index> const& middles;  // per edge: its new vertex, or -1
     EdgeNumbers const& edges;
     std::vector<Index>& faces;
     std::vector<Index>& baseFaces;
+    std::vector<Index>* fvarValues;  // null without a channel
+    Index numFVarValues;
+    std::vector<std::array<Index, 2>>& fvarParents;
+    EdgeNumbers fvarEdges{};  // that are cut
 
     /// Cuts a triangle whose refinement edge is (face[0], face[1]), and its halves. New triangles have their
     /// refinement edge, opposite the newest vertex, first as well.
-    void Cut(std::array<Index, 3> const& face, Index baseFace) const {
-        Index const edge = edges.Find(face[0], face[1]), middle = edge < 0 ? -1 : middles[edge];
+    void Cut(std::array<Corner, 3> const& face, Index baseFace) {
+        Index const edge = edges.Find(face[0].vertex, face[1].vertex), middle = edge < 0 ? -1 : middles[edge];
         if (middle < 0) {
-            faces.insert(faces.end(), face.begin(), face.end());
+            for (Corner const& corner : face) {
+                faces.push_back(corner.vertex);
+                if (fvarValues) fvarValues->push_back(corner.value);
+            }
             baseFaces.push_back(baseFace);
             return;
         }
-        Cut({face[2], face[0], middle}, baseFace);
-        Cut({face[1], face[2], middle}, baseFace);
+        Corner const cut{middle, fvarValues ? CutValue(face[0].value, face[1].value) : 0};
+        Cut({face[2], face[0], cut}, baseFace);
+        Cut({face[1], face[2], cut}, baseFace);
+    }
+
+private:
+    Index CutValue(Index a, Index b) {
+        Index const number = fvarEdges.Get(a, b);
+        if (static_cast<size_t>(number) == fvarParents.size()) fvarParents.push_back({a, b});
+        return numFVarValues + number;
     }
 };
 
@@ -79,6 +99,11 @@ Bisection::Bisection(Index numVertices, std::vector<Index> faces, std::span<doub
         _refinementEdges.push_back(FindLongestEdge(&_mesh.faces[3 * static_cast<size_t>(face)], positions));
         _baseFaces.push_back(face);
     }
+}
+
+void Bisection::SetFVarChannel(Index numValues, std::vector<Index> values) {
+    _numFVarValues = numValues;
+    _fvarValues = std::move(values);
 }
 
 CascadeMesh const& Bisection::Refine() {
@@ -110,11 +135,18 @@ CascadeMesh const& Bisection::Refine() {
         _mesh.parentOffsets.push_back(static_cast<int>(_mesh.parents.size()));
     }
     _baseFaces.clear();
-    Halves const halves{middles, edges, _mesh.faces, _baseFaces};
+    _numFVarValues += static_cast<Index>(_fvarParents.size());
+    _fvarParents.clear();
+    std::vector<Index> const coarseValues = std::move(_fvarValues);
+    _fvarValues.clear();
+    Halves halves{middles, edges, _mesh.faces, _baseFaces, coarseValues.empty() ? nullptr : &_fvarValues, _numFVarValues, _fvarParents};
     for (size_t face = 0; face < _refinementEdges.size(); ++face) {
         size_t const k = static_cast<size_t>(_refinementEdges[face]);
-        Index const* const f = &coarse.faces[3 * face];
-        halves.Cut({f[k], f[(k + 1) % 3], f[(k + 2) % 3]}, coarseBaseFaces[face]);
+        auto const corner = [&](size_t i) -> Corner {
+            size_t const at = 3 * face + (k + i) % 3;
+            return {coarse.faces[at], coarseValues.empty() ? 0 : coarseValues[at]};
+        };
+        halves.Cut({corner(0), corner(1), corner(2)}, coarseBaseFaces[face]);
     }
     _refinementEdges.assign(_baseFaces.size(), 0);
     for (auto const& crease : coarse.creases) {

@@ -24,11 +24,25 @@ public:
     /// One pass. \return the finer mesh, with parents in the one before
     CascadeMesh const& Refine();
 
+    /// Carries a face-varying channel along: values stay, new ones follow. To be called before the first pass.
+    ///
+    /// \param values  per corner of the triangles
+    void SetFVarChannel(Index numValues, std::vector<Index> values);
+
     /// Per triangle of the mesh handed back last: the triangle of the first mesh it lies in.
     std::vector<Index> const& GetBaseFaces() const { return _baseFaces; }
 
+    /// Per corner of these triangles: its face-varying value.
+    std::vector<Index> const& GetFVarValues() const { return _fvarValues; }
+
+    /// The two values that each new one of the last pass lies between.
+    std::vector<std::array<Index, 2>> const& GetFVarParents() const { return _fvarParents; }
+
 private:
     CascadeMesh _mesh;
+    Index _numFVarValues = 0;
+    std::vector<Index> _fvarValues;
+    std::vector<std::array<Index, 2>> _fvarParents;
     std::vector<int> _refinementEdges;  // per triangle: the corner before the edge
     std::vector<Index> _baseFaces;
 };

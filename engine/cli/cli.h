@@ -86,6 +86,7 @@ Verb AddMeasure(CLI::App& app);
 Verb AddMorph(CLI::App& app);
 Verb AddRefine(CLI::App& app);
 Verb AddSharpen(CLI::App& app);
+Verb AddSmooth(CLI::App& app);
 
 /// Exit statuses that are not failures of the program.
 inline constexpr int kDone = 0, kNotReached = 4;

@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
     CommonOptions common;
     using namespace limn::cli;
     std::vector<Verb> const verbs{AddInfo(app),  AddEval(app),    AddBake(app),    AddRefine(app), AddMeasure(app),
-                                  AddFit(app),   AddBands(app),   AddDenoise(app), AddSharpen(app), AddMorph(app),  AddField(app)};
+                                  AddFit(app),   AddBands(app),   AddDenoise(app), AddSharpen(app), AddMorph(app),  AddSmooth(app), AddField(app)};
     for (auto const& verb : verbs) AddCommonOptions(*verb.app, common);
     try {
         app.parse(argc, argv);

@@ -23,9 +23,19 @@ bool WritePng(char const* path, int width, int height, unsigned char const* rgb,
     return true;
 }
 
+bool ReadFirstChannel(char const* path, float* (*allocate)(void*, int, int), void* user, char* reason, size_t reasonSize) {
+    auto const input = OIIO::ImageInput::open(path);
+    if (!input) return Fail(OIIO::geterror(), reason, reasonSize);
+    OIIO::ImageSpec const& spec = input->spec();
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1) return Fail("it has no pixels in two dimensions", reason, reasonSize);
+    float* const pixels = allocate(user, spec.width, spec.height);
+    if (!input->read_image(0, 0, 0, 1, OIIO::TypeDesc::FLOAT, pixels)) return Fail(input->geterror(), reason, reasonSize);
+    return true;
+}
+
 }  // namespace
 
 extern "C" limn::engine::ImagesModule const* limn_images_module() {
-    static limn::engine::ImagesModule const module{WritePng};
+    static limn::engine::ImagesModule const module{WritePng, ReadFirstChannel};
     return &module;
 }

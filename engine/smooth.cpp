@@ -1,0 +1,322 @@
+#include "engine/smooth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "engine/mesh_info.h"
+#include "eval/critical_width.h"
+#include "eval/enclosed_volume.h"
+#include "far_ext/error.h"
+#include "far_ext/face_components.h"
+
+namespace limn::engine {
+
+namespace {
+
+using far_ext::CascadeLevel;
+using far_ext::CascadeMesh;
+using Vector = Eigen::Vector3d;
+
+constexpr int kMaxIterations = 20000;  // of conjugate gradients on a level
+
+Vector At(Scene const& scene, Index vertex) { return Vector(&scene.positions[3 * static_cast<size_t>(vertex)]); }
+
+/// Components of the control mesh.
+struct Components {
+    int count = 0;
+    std::vector<int> ofVertex;  // -1 without faces
+    std::vector<char> isClosed;
+    std::vector<Index> firstVertex;
+
+    explicit Components(Far::TopologyLevel const& level) {
+        auto const faces = far_ext::FaceComponents::Find(level);
+        count = faces.count;
+        ofVertex.assign(static_cast<size_t>(level.GetNumVertices()), -1);
+        isClosed.assign(static_cast<size_t>(count), 1);
+        firstVertex.assign(static_cast<size_t>(count), -1);
+        for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
+            auto const around = level.GetVertexFaces(vertex);
+            if (around.size() == 0) continue;
+            int const component = ofVertex[vertex] = faces.ofFace[around[0]];
+            if (firstVertex[component] < 0) firstVertex[component] = vertex;
+        }
+        for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+            auto const around = level.GetEdgeFaces(edge);
+            if (around.size() == 1) isClosed[faces.ofFace[around[0]]] = 0;
+        }
+    }
+};
+
+/// Values of the coarser mesh' vertices, each finer one taking its first parent's.
+std::vector<int> Inherit(CascadeMesh const& mesh, std::vector<int> const& coarse) {
+    std::vector<int> fine(static_cast<size_t>(mesh.numVertices));
+    for (size_t vertex = 0; vertex < fine.size(); ++vertex) fine[vertex] = coarse[mesh.parents[static_cast<size_t>(mesh.parentOffsets[vertex])]];
+    return fine;
+}
+
+/// Positions of the coarser mesh, interpolated linearly as the cascade does.
+std::vector<double> Interpolate(CascadeMesh const& mesh, std::vector<double> const& coarse) {
+    std::vector<double> fine(3 * static_cast<size_t>(mesh.numVertices), 0.0);
+    for (size_t vertex = 0; vertex < fine.size() / 3; ++vertex) {
+        int const begin = mesh.parentOffsets[vertex], end = mesh.parentOffsets[vertex + 1];
+        for (size_t c = 0; c < 3; ++c) {
+            for (int k = begin; k < end; ++k) fine[3 * vertex + c] += coarse[3 * static_cast<size_t>(mesh.parents[k]) + c];
+            fine[3 * vertex + c] /= end - begin;
+        }
+    }
+    return fine;
+}
+
+void RefuseDefects(Scene const& scene, Far::TopologyLevel const& level) {
+    for (Defect const& defect : FindDefects(scene, level)) {
+        for (char const* kind : {"non_manifold_edge", "non_manifold_vertex", "winding", "not_orientable", "repeated_corner"}) {
+            if (defect.kind == kind) throw Error(ErrorCode::BadMesh, fmt::format("{}: {}; a geometric filter needs a manifold, oriented one way", scene.path, defect.message));
+        }
+    }
+}
+
+/// Faces must lie side by side in the plane: all turn the same way, at each corner.
+void RequireGraph(Scene const& scene, Far::TopologyLevel const& level) {
+    double direction = 0.0;
+    for (Index face = 0; face < level.GetNumFaces(); ++face) {
+        auto const vertices = level.GetFaceVertices(face);
+        int const n = vertices.size();
+        for (int k = 0; k < n; ++k) {
+            Vector const a = At(scene, vertices[k]), b = At(scene, vertices[(k + 1) % n]), c = At(scene, vertices[(k + 2) % n]);
+            double const turn = (b - a).x() * (c - b).y() - (b - a).y() * (c - b).x();
+            if (direction == 0.0) direction = turn;
+            if (turn != 0.0 && (turn > 0.0) == (direction > 0.0)) continue;
+            throw Error(ErrorCode::BadMesh, fmt::format("{}: {} is folded, hollow or without area in the plane of x and y; --graph needs heights z over a "
+                                                        "plane of convex faces",
+                                                        scene.path, scene.NameFace(face)));
+        }
+    }
+}
+
+/// Warns of corners so sharp that triangles degenerate there with the levels: surface.md 3.3.
+///
+/// \param widths  on the first level, whose first vertices are the control mesh'; empty: everywhere some
+void WarnOfSharpCorners(Scene const& scene, Far::TopologyLevel const& level, CascadeLevel const& first, std::vector<double> const& widths, Job& job) {
+    std::vector<double> angles(static_cast<size_t>(level.GetNumVertices()), 0.0);
+    for (Index face = 0; face < level.GetNumFaces(); ++face) {
+        auto const vertices = level.GetFaceVertices(face);
+        int const n = vertices.size();
+        for (int k = 0; k < n; ++k) {
+            Vector const a = At(scene, vertices[(k + n - 1) % n]) - At(scene, vertices[k]), b = At(scene, vertices[(k + 1) % n]) - At(scene, vertices[k]);
+            angles[vertices[k]] += std::atan2(a.cross(b).norm(), a.dot(b));
+        }
+    }
+    constexpr double kHalfTurn = std::numbers::pi * (1.0 - 1e-9);
+    int count = 0;
+    Index sharpest = -1;
+    for (Index row = 0; row < first.numClosed; ++row) {
+        Index const vertex = first.vertices[row];
+        if (vertex >= level.GetNumVertices() || angles[vertex] >= kHalfTurn || (!widths.empty() && widths[vertex] == 0.0)) continue;
+        ++count;
+        if (sharpest < 0 || angles[vertex] < angles[sharpest]) sharpest = vertex;
+    }
+    if (count == 0) return;
+    job.Warn(fmt::format("{}: at vertex {}{} the faces' angles add up to {:.0f} degrees; below 180 the filter's triangles degenerate with the levels", scene.path,
+                         sharpest, count > 1 ? fmt::format(" and {} more", count - 1) : "", angles[sharpest] * 180.0 / std::numbers::pi));
+}
+
+/// Runs one cascade.
+template <class Scalar>
+class SmoothRun {
+public:
+    SmoothRun(Scene const& scene, Far::TopologyLevel const& base, FilterWidths const& widths, SmoothOptions const& options, Job& job)
+        : _scene(scene),
+          _base(base),
+          _widths(widths),
+          _options(options),
+          _job(job),
+          _components(base),
+          _ofVertex(_components.ofVertex),
+          _start(scene.positions),
+          _levels(scene, options.levels, options.refinement, options.keepsCreases),
+          _cascade(scene.positions, GetStartWidths(scene, widths), MakeCascadeOptions()) {}
+
+    /// \return the last level, or nothing where a component collapsed
+    Scene Run(SmoothReport& report) {
+        size_t total = 0;
+        for (int level = 1; level <= _options.levels; ++level) total += GetEffort(level);
+        _job.Start("smooth", total);
+        for (_level = 1; _level <= _options.levels; ++_level) {
+            Step(report);
+            _job.Advance(GetEffort(_level));
+            if (report.collapse && !_options.keepsResult) break;
+        }
+        _job.Finish();
+        if (report.collapse && !_options.keepsResult) return {};
+        Scene fine = _levels.MakeScene();
+        fine.positions = _cascade.GetPositions();
+        auto const widths = _cascade.GetWidths();
+        std::erase_if(fine.primvars, [](Primvar const& primvar) { return primvar.name == "width"; });
+        fine.primvars.push_back({"width", 1, std::vector<float>(widths.begin(), widths.end())});
+        return fine;
+    }
+
+private:
+    static std::vector<double> GetStartWidths(Scene const& scene, FilterWidths const& widths) {
+        if (widths.IsConstant()) return {};
+        return widths.GetAtVertices().empty() ? std::vector<double>(scene.positions.size() / 3, 0.0) : widths.GetAtVertices();
+    }
+
+    eval::CascadeOptions MakeCascadeOptions() const {
+        return {.solver = _options.solver,
+                .tolerance = IsByTolerance() ? _options.tolerance : 0.0,
+                .width = _widths.IsConstant() ? _widths.GetConstant() : -1.0,
+                .isGraph = _options.isGraph};
+    }
+
+    bool IsByTolerance() const { return _options.sweeps == 0 && _options.iterations == 0; }
+
+    size_t GetEffort(int level) const {
+        return size_t{1} << (_options.refinement == SmoothRefinement::Quadrisect ? 2 * level : level);
+    }
+
+    int CountIterations() const {
+        if (_options.iterations > 0) return _options.iterations;
+        if (_options.sweeps == 0) return kMaxIterations;
+        return eval::CountSweeps(_options.solver, _options.sweeps, _options.levels - _level, _options.refinement == SmoothRefinement::Bisect);
+    }
+
+    void Step(SmoothReport& report) {
+        CheckInterrupted();
+        CascadeMesh const& mesh = _levels.MakeNext();
+        std::vector<Index> const coarse = std::move(_rows.vertices);
+        _rows = far_ext::BuildCascadeLevel(mesh, coarse, _options.boundary);
+        _ofVertex = Inherit(mesh, _ofVertex);
+        _start = Interpolate(mesh, _start);
+        auto const given = _widths.SampleLevel(_levels, _start);
+        if (_level == 1 && !_options.isGraph) {
+            WarnOfSharpCorners(_scene, _base, _rows, given.empty() ? _widths.GetAtVertices() : given, _job);
+        }
+        CheckInterrupted();
+        bool const wasFrozen = !report.levels.empty() && report.levels.back().isMetricFrozen;
+        report.levels.push_back(_cascade.Step(_rows, CountIterations(), given));
+        auto const& step = report.levels.back();
+        if (step.isMetricFrozen && !wasFrozen) {
+            _job.Warn(fmt::format("{}: from level {} on the filter keeps the metric of the level before: its smallest angle would be {:.2g} degrees, its "
+                                  "smallest area {:.2g} of the mean. A smaller width, or less sharp corners, avoid it",
+                                  _scene.path, _level, step.minAngleRadians * 180.0 / std::numbers::pi, step.areaRatio));
+        }
+        if (_options.preservesVolume) RestoreVolumes(mesh, report);
+        else if (!_options.isGraph) WatchRadii(report);
+    }
+
+    void RestoreVolumes(CascadeMesh const& mesh, SmoothReport& report) {
+        auto positions = _cascade.GetPositions();
+        auto const widths = _cascade.GetWidths();
+        std::vector<double> reach(widths.size(), 0.0);  // sigma^2 / 2 where the filter may move a vertex
+        for (Index row = 0; row < _rows.numSurface; ++row) {
+            double const width = widths[_rows.vertices[row]];
+            reach[_rows.vertices[row]] = width * width / 2;
+        }
+        auto const wanted = eval::MeasureVolumes(mesh, _ofVertex, _components.count, _start);
+        auto const isMet = eval::RestoreVolumes(mesh, _ofVertex, _components.isClosed, wanted, reach, positions);
+        _cascade.SetPositions(positions);
+        auto const reached = eval::MeasureVolumes(mesh, _ofVertex, _components.count, positions);
+        report.volumes.clear();
+        for (size_t component = 0; component < isMet.size(); ++component) {
+            if (!_components.isClosed[component]) continue;
+            report.volumes.push_back({_components.firstVertex[component], wanted[component], reached[component], isMet[component] != 0});
+        }
+    }
+
+    void WatchRadii(SmoothReport& report) {
+        auto const start = eval::FindMeanRadii(_start, _ofVertex, _components.count);
+        auto const present = eval::FindMeanRadii(_cascade.GetPositions(), _ofVertex, _components.count);
+        for (size_t component = 0; component < start.size(); ++component) {
+            if (!_components.isClosed[component] || !(start[component] > 0.0)) continue;
+            double const ratio = present[component] / start[component];
+            bool const isWorse = !report.collapse || (report.collapse->level == _level && ratio < report.collapse->radiusRatio);
+            if (ratio < eval::kLeastRadiusRatio && isWorse) report.collapse = SmoothCollapse{_components.firstVertex[component], _level, ratio, 0.0};
+        }
+    }
+
+    Scene const& _scene;
+    Far::TopologyLevel const& _base;
+    FilterWidths const& _widths;
+    SmoothOptions const& _options;
+    Job& _job;
+    Components _components;
+    std::vector<int> _ofVertex;
+    std::vector<double> _start;  // the start surface on the present level
+    SmoothLevels _levels;
+    CascadeLevel _rows;
+    eval::Cascade<Scalar> _cascade;
+    int _level = 0;
+};
+
+/// Measures what factor on the widths the closed components carry, on a grid of modest size.
+double MeasureCriticalFactor(Scene const& scene, Far::TopologyLevel const& base, FilterWidths const& widths, SmoothOptions const& options) {
+    constexpr double kMaxVertices = 10000.0;
+    bool const isBisection = options.refinement == SmoothRefinement::Bisect;
+    int maxLevels = isBisection ? 6 : 3;
+    while (maxLevels > 1 && base.GetNumVertices() * std::pow(isBisection ? 2.0 : 4.0, maxLevels) > kMaxVertices) --maxLevels;
+    SmoothLevels levels(scene, maxLevels, options.refinement, options.keepsCreases);
+    Components const components(base);
+    std::vector<int> ofVertex = components.ofVertex;
+    std::vector<double> start = scene.positions;
+    std::vector<CascadeLevel> rows;
+    eval::CascadeWidths factors;
+    if (widths.IsConstant()) factors.constant = widths.GetConstant();
+    else factors.atVertices = widths.GetAtVertices().empty() ? std::vector<double>(start.size() / 3, 0.0) : widths.GetAtVertices();
+    for (int level = 1; level <= maxLevels; ++level) {
+        CascadeMesh const& mesh = levels.MakeNext();
+        rows.push_back(far_ext::BuildCascadeLevel(mesh, rows.empty() ? std::vector<Index>{} : rows.back().vertices, options.boundary));
+        ofVertex = Inherit(mesh, ofVertex);
+        start = Interpolate(mesh, start);
+        auto given = widths.SampleLevel(levels, start);
+        if (!given.empty()) factors.atLevels.push_back(std::move(given));
+    }
+    return eval::FindCriticalFactor(rows, scene.positions, factors, ofVertex, components.isClosed, CheckInterrupted);
+}
+
+Scene RunOnce(Scene const& scene, Far::TopologyRefiner const& refiner, FilterWidths const& widths, SmoothOptions const& options, Job& job, SmoothReport& report) {
+    auto const base = refiner.GetLevel(0);
+    report = {};
+    report.meanEdge = MeasureMeanEdge(scene, base);
+    report.largestWidth = widths.GetLargest();
+    bool const isSingle = options.isSingle && options.solver == eval::CascadeSolver::Jacobi;
+    return isSingle ? SmoothRun<float>(scene, base, widths, options, job).Run(report) : SmoothRun<double>(scene, base, widths, options, job).Run(report);
+}
+
+}  // namespace
+
+bool SmoothReport::HasConverged() const {
+    return !collapse && std::all_of(levels.begin(), levels.end(), [](auto const& level) { return level.converged; });
+}
+
+Scene Smooth(Scene const& scene, Far::TopologyRefiner const& refiner, FilterWidths const& widths, SmoothOptions const& options, Job& job, SmoothReport& report) {
+    auto const base = refiner.GetLevel(0);
+    RefuseDefects(scene, base);
+    if (options.isGraph) RequireGraph(scene, base);
+    Scene fine = RunOnce(scene, refiner, widths, options, job, report);
+    if (report.collapse) {
+        double const factor = MeasureCriticalFactor(scene, base, widths, options);
+        report.collapse->criticalFactor = factor;
+        if (options.limitsWidth && factor > 0.0) {
+            SmoothCollapse const first = *report.collapse;
+            double const limit = 0.95 * factor;  // a fixed point near the critical width takes many levels
+            fine = RunOnce(scene, refiner, widths.Scaled(limit), options, job, report);
+            report.limitedBy = limit;
+            job.Warn(fmt::format("{}: the width was reduced to {:.4g} of what was asked for; the component of vertex {} carries {:.4g}", scene.path, limit,
+                                 first.firstVertex, factor));
+        }
+    }
+    for (SmoothVolume const& volume : report.volumes) {
+        if (!volume.isMet) {
+            job.Warn(fmt::format("{}: the component of vertex {} could not keep its volume: {:.6g} of {:.6g}", scene.path, volume.firstVertex, volume.end, volume.start));
+        }
+    }
+    return fine;
+}
+
+}  // namespace limn::engine

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <opensubdiv/far/topologyRefiner.h>
+
+#include "engine/filter_widths.h"
+#include "engine/job.h"
+#include "engine/scene.h"
+#include "engine/smooth_levels.h"
+#include "eval/cascade.h"
+
+namespace limn::engine {
+
+struct SmoothOptions {
+    int levels = 2;
+    SmoothRefinement refinement = SmoothRefinement::Quadrisect;
+    far_ext::BoundaryRule boundary = far_ext::BoundaryRule::Fixed;
+    eval::CascadeSolver solver = eval::CascadeSolver::ConjugateGradients;
+    int sweeps = 0;            ///< on the finest level, coarser ones by eval::CountSweeps; 0: by one of the following
+    int iterations = 0;        ///< the same on every level
+    double tolerance = 1e-6;   ///< else: conjugate gradients to this residual
+    bool isGraph = false;      ///< filters heights z over the plane of x and y
+    bool keepsCreases = false;
+    bool preservesVolume = false;  ///< of closed components
+    bool limitsWidth = false;      ///< takes 0.95 of the critical width where the width asked for is above it
+    bool keepsResult = false;      ///< goes on to the last level after a collapse
+    bool isSingle = false;         ///< Jacobi sweeps in single precision
+};
+
+/// A closed component that shrank below half of its mean radius: no fixed point can be expected any more (surface.md 3.1).
+struct SmoothCollapse {
+    Index firstVertex = 0;  ///< of the component, in the control mesh
+    int level = 0;          ///< where it was noticed
+    double radiusRatio = 0.0;
+    double criticalFactor = 0.0;  ///< measured: the largest factor on all widths that it carries
+};
+
+/// A volume that was to be preserved.
+struct SmoothVolume {
+    Index firstVertex = 0;
+    double start = 0.0, end = 0.0;
+    bool isMet = false;
+};
+
+struct SmoothReport {
+    std::vector<eval::CascadeStepReport> levels;
+    double meanEdge = 0.0;      ///< of the control mesh
+    double largestWidth = 0.0;  ///< as used
+    std::optional<double> limitedBy;  ///< factor on all widths that limitsWidth applied
+    std::optional<SmoothCollapse> collapse;
+    std::vector<SmoothVolume> volumes;
+    bool HasConverged() const;
+};
+
+/// Refines a mesh and smooths it by curvature motion: the cascadic geometric filter.
+///
+/// Topology  of uniform refinement with the scene's scheme, or of bisection; positions start from linear interpolation.
+/// Result    an approximation of the filtered surface, with texture coordinates by the scene's rule and, as primvar
+///           `width`, the filter width at each vertex. Creases and corners are left out unless they were kept.
+///           Where a component collapsed and results are not to be kept, an empty mesh.
+///
+/// \param scene   of the scheme Loop where triangles are to stay triangles
+/// \param job     told of progress, and of a metric that was frozen, sharp corners, volumes that could not be kept
+/// \throws Error  BadMesh: not manifold or oriented two ways; for graphs, faces that overlap in the plane.  As SmoothLevels
+/// Source  [Diewald02] Sec. 5 to 8; surface.md 3
+Scene Smooth(Scene const& scene, Far::TopologyRefiner const& refiner, FilterWidths const& widths, SmoothOptions const& options, Job& job,
+             SmoothReport& report);
+
+}  // namespace limn::engine
