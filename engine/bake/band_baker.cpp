@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <optional>
 #include <set>
 
 #include <fmt/format.h>
@@ -13,6 +12,7 @@
 
 #include "engine/bake/pixel_kernel.h"
 #include "engine/bands.h"
+#include "engine/options_text.h"
 #include "eval/face_places.h"
 #include "far_ext/error.h"
 #include "far_ext/refiner.h"
@@ -31,6 +31,8 @@ struct BandBaker::Worker {
     std::vector<double> noiseValues, noiseBlock;  // of all hits, of a block of samples
     std::optional<eval::FieldSurface::Sampler> field;
     std::vector<Eigen::Vector3d> fieldValues, fieldBlock;
+    std::optional<eval::FinerSurface::Sampler> finer;
+    std::vector<Eigen::Vector3d> finerPoints, finerBlock;
     std::vector<float> samplePlanes, lineSums;
     TexelBand sampleTexels;
 
@@ -40,6 +42,7 @@ struct BandBaker::Worker {
           raster(*baker._uvSurface, baker._scene.uvs) {
         if (baker._noise) noise.emplace(*baker._noise);
         if (baker._field) field.emplace(*baker._field);
+        if (baker._finer) finer.emplace(*baker._finer);
     }
 };
 
@@ -92,19 +95,20 @@ BandBaker::BandBaker(Scene const& scene, Far::TopologyRefiner const& refiner, Sc
                     fmt::format("{}: the mesh has no texture coordinates; a bake needs them ('vt' in OBJ, s,t in PLY)",
                                 scene.path));
     }
-    if (other && (other->cage.faceVertices != scene.cage.faceVertices ||
-                  other->cage.faceSizes != scene.cage.faceSizes)) {
-        throw Error(ErrorCode::BadMesh,
-                    fmt::format("{}: its faces differ from those of '{}'; --against needs the same faces and "
-                                "vertices in the same order",
-                                other->path, scene.path));
-    }
     for (Map const& map : maps) {
         _numPlanes += map.GetNumChannels();
         _needsJacobian |= NeedsJacobian(map, options.maps);
     }
     _surface = std::make_unique<eval::LimitSurface>(_refiner);
     _uvSurface = std::make_unique<eval::LimitSurface>(_refiner, 0);
+    if (other && (other->cage.faceVertices != scene.cage.faceVertices || other->cage.faceSizes != scene.cage.faceSizes)) {
+        _finer = eval::FinerSurface::Build(*_surface, scene.cage, other->cage, other->positions);
+        if (!_finer) {
+            throw Error(ErrorCode::BadMesh, fmt::format("{}: its faces differ from those of '{}'; --against needs the same faces and vertices in the same "
+                                                        "order, or these refined by the same --scheme ({})",
+                                                        other->path, scene.path, GetName(scene.cage.scheme)));
+        }
+    }
 
     _isBaked.assign(scene.cage.faceSizes.size(), 1);
     if (!options.groups.empty()) _isBaked = SelectGroups(scene, options.groups);
@@ -112,7 +116,7 @@ BandBaker::BandBaker(Scene const& scene, Far::TopologyRefiner const& refiner, Sc
         if (!_surface->HasLimit(face)) _isBaked[face] = 0;
     }
 
-    // The tree's channels: positions, then primvars, then the other mesh's positions.
+    // The tree's channels: positions, then primvars, then bands, then the other mesh's positions.
     _values.push_back({scene.positions, 3});
     for (Primvar const& primvar : scene.primvars) {
         _primvarValues.insert(_primvarValues.end(), primvar.values.begin(), primvar.values.end());
@@ -122,7 +126,6 @@ BandBaker::BandBaker(Scene const& scene, Far::TopologyRefiner const& refiner, Sc
         _values.push_back({std::span(_primvarValues).subspan(first, primvar.values.size()), primvar.numChannels});
         first += primvar.values.size();
     }
-    if (other) _values.push_back({other->positions, 3});
 
     auto const has = [&](MapKind kind) {
         return std::any_of(maps.begin(), maps.end(), [&](Map const& map) { return map.kind == kind; });
@@ -137,6 +140,7 @@ BandBaker::BandBaker(Scene const& scene, Far::TopologyRefiner const& refiner, Sc
         }
         _values.push_back({_frequencyBands, GetNumBandChannels(options.maps)});
     }
+    if (other && !_finer) _values.push_back({other->positions, 3});
     if (has(MapKind::Noise)) _noise = std::make_unique<SurfaceNoise>(scene, options.noise);
     if (has(MapKind::Field)) {
         _field = std::make_unique<eval::FieldSurface>(scene.cage, scene.positions, options.field, ChooseFieldLevels(scene, options));
@@ -323,6 +327,10 @@ void BandBaker::EvaluateHits(Worker& worker, Index face, int domain, TexelHits c
         worker.fieldValues.resize(hits.s.size());
         worker.field->Evaluate(face, domain, hits.s, hits.t, worker.fieldValues);
     }
+    if (_finer) {
+        worker.finerPoints.resize(hits.s.size());
+        worker.finer->Evaluate(face, domain, hits.s, hits.t, worker.finerPoints);
+    }
     worker.sampler.Evaluate(domain, hits.s, hits.t, [&](std::span<int const> samples, float const* values, size_t stride) {
         worker.places.resize(samples.size());
         for (size_t i = 0; i < samples.size(); ++i) worker.places[i] = hits.texel[samples[i]];
@@ -334,12 +342,14 @@ void BandBaker::EvaluateHits(Worker& worker, Index face, int domain, TexelHits c
         }
         worker.noiseBlock.clear();
         worker.fieldBlock.clear();
+        worker.finerBlock.clear();
         for (int sample : samples) {
             if (_noise) worker.noiseBlock.push_back(worker.noiseValues[sample]);
             if (_field) worker.fieldBlock.push_back(worker.fieldValues[sample]);
+            if (_finer) worker.finerBlock.push_back(worker.finerPoints[sample]);
         }
         MapSamples const block{_quantity, values, stride, samples.size(), worker.jacobians, _meanArea, worker.noiseBlock,
-                               _noise ? _noise->GetLow() : 0.0, _noise ? _noise->GetHigh() : 0.0, worker.fieldBlock};
+                               _noise ? _noise->GetLow() : 0.0, _noise ? _noise->GetHigh() : 0.0, worker.fieldBlock, worker.finerBlock};
         float* plane = planes;
         for (Map const& map : _maps) {
             size_t const numChannels = static_cast<size_t>(map.GetNumChannels());

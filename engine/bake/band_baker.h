@@ -3,6 +3,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include <tbb/enumerable_thread_specific.h>
@@ -12,6 +13,7 @@
 #include "engine/bake/uv_raster.h"
 #include "engine/noise/surface_noise.h"
 #include "eval/field_surface.h"
+#include "eval/finer_surface.h"
 #include "eval/surface_sampler.h"
 
 namespace limn::engine {
@@ -42,6 +44,7 @@ struct Band {
 /// Threads  MakeBand may run on many threads; the same bands come out.
 class BandBaker {
 public:
+    /// \param other    null, or a mesh of the same faces, or of these refined uniformly
     /// \throws Error  BadMesh: no UVs; --against with other faces
     BandBaker(Scene const& scene, Far::TopologyRefiner const& refiner, Scene const* other,
               BakeOptions const& options, std::vector<Map> const& maps);
@@ -91,6 +94,7 @@ private:
     std::unique_ptr<eval::LimitSurface> _surface, _uvSurface;
     std::unique_ptr<SurfaceNoise> _noise;       // null where no map shows it
     std::unique_ptr<eval::FieldSurface> _field;  // likewise
+    std::optional<eval::FinerSurface> _finer;    // --against, where its faces are refined ones
     std::vector<char> _isBaked;
     std::vector<UVBounds> _bounds;
     double _meanArea = 1.0;  // surface area per texture area

@@ -115,11 +115,12 @@ std::vector<Map> MakeMaps(MapOptions const& options, Scene const& scene) {
             if (!options.hasOtherMesh) {
                 throw Error(ErrorCode::BadOption, "--maps displacement needs --against MESH");
             }
-            map.extraChannel = 3 + numPrimvarChannels;
+            bool const hasBands = std::find(options.names.begin(), options.names.end(), "bands") != options.names.end();
+            map.extraChannel = 3 + numPrimvarChannels + (hasBands ? GetNumBandChannels(options) : 0);
             if (options.isVector) map.channels = {"R", "G", "B"};
         }
         if (map.kind == MapKind::Bands) {
-            map.extraChannel = 3 + numPrimvarChannels + (options.hasOtherMesh ? 3 : 0);
+            map.extraChannel = 3 + numPrimvarChannels;
             for (int band = 1; band <= options.numBands; ++band) {
                 std::string const part = band < options.numBands ? fmt::format("band{}", band) : "remainder";
                 for (char const* axis : {".R", ".G", ".B"}) {
@@ -328,7 +329,7 @@ void EvaluateMap(Map const& map, MapOptions const& options, MapSamples const& sa
         case MapKind::Normal: copyVector(eval::kNormalX); break;
         case MapKind::Displacement:
             for (size_t i = 0; i < count; ++i) {
-                Eigen::Vector3d const there = GetVector(samples, FindPlane(samples, map.extraChannel), i);
+                Eigen::Vector3d const there = samples.other.empty() ? GetVector(samples, FindPlane(samples, map.extraChannel), i) : samples.other[i];
                 PutDisplacement(options, samples, i, there - GetVector(samples, eval::kPositionX, i), out, outStride);
             }
             break;

@@ -33,7 +33,7 @@ struct Map {
     bool isSigned = true;
     std::string units;
     eval::Quantity quantity;            ///< what it needs of the surface
-    int extraChannel = 0;               ///< of the tree's values: where a primvar, the other mesh or the bands start
+    int extraChannel = 0;               ///< of the tree's values: where a primvar, the bands or the other mesh start
     float zero = 0.0f;                  ///< what 0 is written as: the offset of --encode
 
     int GetNumChannels() const { return static_cast<int>(channels.size()); }
@@ -74,6 +74,7 @@ struct MapSamples {
     std::span<double const> noise;  ///< per sample; empty unless a map shows it
     double noiseLow, noiseHigh;     ///< its range over the whole surface
     std::span<Eigen::Vector3d const> field;  ///< per sample; empty unless a map shows it
+    std::span<Eigen::Vector3d const> other;  ///< per sample: limit of a finer mesh to compare with; empty: the tree has it
 };
 
 /// Computes one map's channels for a block of samples: out[c * outStride + i].
