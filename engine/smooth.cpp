@@ -52,6 +52,18 @@ struct Components {
     }
 };
 
+std::vector<double> Times(double factor, std::vector<double> values) {
+    for (double& value : values) value *= factor;
+    return values;
+}
+
+/// A length of the scene's size, so that the fourth powers of all others fit a float; a power of two, which costs no digit.
+double FindUnit(Scene const& scene) {
+    double size = 0.0;
+    for (size_t i = 3; i < scene.positions.size(); ++i) size = std::max(size, std::abs(scene.positions[i] - scene.positions[i % 3]));
+    return size > 0.0 && std::isfinite(size) ? std::exp2(std::ilogb(size)) : 1.0;
+}
+
 /// Values of the coarser mesh' vertices, each finer one taking its first parent's.
 std::vector<int> Inherit(CascadeMesh const& mesh, std::vector<int> const& coarse) {
     std::vector<int> fine(static_cast<size_t>(mesh.numVertices));
@@ -125,6 +137,12 @@ void WarnOfSharpCorners(Scene const& scene, Far::TopologyLevel const& level, Cas
                          sharpest, count > 1 ? fmt::format(" and {} more", count - 1) : "", angles[sharpest] * 180.0 / std::numbers::pi));
 }
 
+/// Widths at the control mesh' vertices: 0 where they are given anew on every level, none where they are constant.
+std::vector<double> GetStartWidths(Scene const& scene, FilterWidths const& widths) {
+    if (widths.IsConstant()) return {};
+    return widths.GetAtVertices().empty() ? std::vector<double>(scene.positions.size() / 3, 0.0) : widths.GetAtVertices();
+}
+
 /// Runs one cascade.
 template <class Scalar>
 class SmoothRun {
@@ -139,7 +157,8 @@ public:
           _ofVertex(_components.ofVertex),
           _start(scene.positions),
           _levels(scene, options.levels, options.refinement, options.keepsCreases),
-          _cascade(scene.positions, GetStartWidths(scene, widths), MakeCascadeOptions()) {}
+          _unit(FindUnit(scene)),
+          _cascade(Times(1.0 / _unit, scene.positions), Times(1.0 / _unit, GetStartWidths(scene, widths)), MakeCascadeOptions()) {}
 
     /// \return the last level, or nothing where a component collapsed
     Scene Run(SmoothReport& report) {
@@ -149,28 +168,22 @@ public:
         for (_level = 1; _level <= _options.levels; ++_level) {
             Step(report);
             _job.Advance(GetEffort(_level));
-            if (report.collapse && !_options.keepsResult) break;
+            if (report.shrinkage.radiusRatio < eval::kLeastRadiusRatio && !_options.keepsResult) return {};
         }
         _job.Finish();
-        if (report.collapse && !_options.keepsResult) return {};
         Scene fine = _levels.MakeScene();
-        fine.positions = _cascade.GetPositions();
-        auto const widths = _cascade.GetWidths();
+        fine.positions = Times(_unit, _cascade.GetPositions());
+        auto const widths = Times(_unit, _cascade.GetWidths());
         std::erase_if(fine.primvars, [](Primvar const& primvar) { return primvar.name == "width"; });
         fine.primvars.push_back({"width", 1, std::vector<float>(widths.begin(), widths.end())});
         return fine;
     }
 
 private:
-    static std::vector<double> GetStartWidths(Scene const& scene, FilterWidths const& widths) {
-        if (widths.IsConstant()) return {};
-        return widths.GetAtVertices().empty() ? std::vector<double>(scene.positions.size() / 3, 0.0) : widths.GetAtVertices();
-    }
-
     eval::CascadeOptions MakeCascadeOptions() const {
         return {.solver = _options.solver,
                 .tolerance = IsByTolerance() ? _options.tolerance : 0.0,
-                .width = _widths.IsConstant() ? _widths.GetConstant() : -1.0,
+                .width = _widths.IsConstant() ? _widths.GetConstant() / _unit : -1.0,
                 .isGraph = _options.isGraph};
     }
 
@@ -199,7 +212,7 @@ private:
         }
         CheckInterrupted();
         bool const wasFrozen = !report.levels.empty() && report.levels.back().isMetricFrozen;
-        report.levels.push_back(_cascade.Step(_rows, CountIterations(), given));
+        report.levels.push_back(_cascade.Step(_rows, CountIterations(), Times(1.0 / _unit, given)));
         auto const& step = report.levels.back();
         if (step.isMetricFrozen && !wasFrozen) {
             _job.Warn(fmt::format("{}: from level {} on the filter keeps the metric of the level before: its smallest angle would be {:.2g} degrees, its "
@@ -210,17 +223,21 @@ private:
         else if (!_options.isGraph) WatchRadii(report);
     }
 
+    /// Adds to the equation a force along the normals that keeps the volume: (M + L) X = M (X0 + c sigma^2 / 2 n), with c per
+    /// component. As that is linear in c, it takes one more solve.
     void RestoreVolumes(CascadeMesh const& mesh, SmoothReport& report) {
-        auto positions = _cascade.GetPositions();
+        auto positions = Times(_unit, _cascade.GetPositions());
         auto const widths = _cascade.GetWidths();
-        std::vector<double> reach(widths.size(), 0.0);  // sigma^2 / 2 where the filter may move a vertex
-        for (Index row = 0; row < _rows.numSurface; ++row) {
-            double const width = widths[_rows.vertices[row]];
-            reach[_rows.vertices[row]] = width * width / 2;
+        std::vector<double> force = eval::FindVolumeNormals(mesh, positions);
+        for (Index row = 0; row < _rows.GetNumRows(); ++row) {
+            size_t const vertex = static_cast<size_t>(_rows.vertices[row]);
+            double const share = row < _rows.numSurface ? widths[vertex] * widths[vertex] / 2 : 0.0;
+            for (size_t i = 3 * vertex; i < 3 * vertex + 3; ++i) force[i] *= share;
         }
+        auto const directions = _cascade.Filter(force, CountIterations());
         auto const wanted = eval::MeasureVolumes(mesh, _ofVertex, _components.count, _start);
-        auto const isMet = eval::RestoreVolumes(mesh, _ofVertex, _components.isClosed, wanted, reach, positions);
-        _cascade.SetPositions(positions);
+        auto const isMet = eval::RestoreVolumes(mesh, _ofVertex, _components.isClosed, wanted, directions, positions);
+        _cascade.SetPositions(Times(1.0 / _unit, positions));
         auto const reached = eval::MeasureVolumes(mesh, _ofVertex, _components.count, positions);
         report.volumes.clear();
         for (size_t component = 0; component < isMet.size(); ++component) {
@@ -231,12 +248,11 @@ private:
 
     void WatchRadii(SmoothReport& report) {
         auto const start = eval::FindMeanRadii(_start, _ofVertex, _components.count);
-        auto const present = eval::FindMeanRadii(_cascade.GetPositions(), _ofVertex, _components.count);
+        auto const present = eval::FindMeanRadii(Times(_unit, _cascade.GetPositions()), _ofVertex, _components.count);
         for (size_t component = 0; component < start.size(); ++component) {
             if (!_components.isClosed[component] || !(start[component] > 0.0)) continue;
             double const ratio = present[component] / start[component];
-            bool const isWorse = !report.collapse || (report.collapse->level == _level && ratio < report.collapse->radiusRatio);
-            if (ratio < eval::kLeastRadiusRatio && isWorse) report.collapse = SmoothCollapse{_components.firstVertex[component], _level, ratio, 0.0};
+            if (ratio < report.shrinkage.radiusRatio) report.shrinkage = {_components.firstVertex[component], _level, ratio};
         }
     }
 
@@ -249,14 +265,16 @@ private:
     std::vector<int> _ofVertex;
     std::vector<double> _start;  // the start surface on the present level
     SmoothLevels _levels;
+    double _unit;  // of the cascade's lengths
     CascadeLevel _rows;
     eval::Cascade<Scalar> _cascade;
     int _level = 0;
 };
 
-/// Measures what factor on the widths the closed components carry, on a grid of modest size.
+constexpr double kMaxVertices = 10000.0;  // of a grid to measure the critical width on
+
+/// Measures what factor on the widths the closed components carry.
 double MeasureCriticalFactor(Scene const& scene, Far::TopologyLevel const& base, FilterWidths const& widths, SmoothOptions const& options) {
-    constexpr double kMaxVertices = 10000.0;
     bool const isBisection = options.refinement == SmoothRefinement::Bisect;
     int maxLevels = isBisection ? 6 : 3;
     while (maxLevels > 1 && base.GetNumVertices() * std::pow(isBisection ? 2.0 : 4.0, maxLevels) > kMaxVertices) --maxLevels;
@@ -265,18 +283,19 @@ double MeasureCriticalFactor(Scene const& scene, Far::TopologyLevel const& base,
     std::vector<int> ofVertex = components.ofVertex;
     std::vector<double> start = scene.positions;
     std::vector<CascadeLevel> rows;
-    eval::CascadeWidths factors;
-    if (widths.IsConstant()) factors.constant = widths.GetConstant();
-    else factors.atVertices = widths.GetAtVertices().empty() ? std::vector<double>(start.size() / 3, 0.0) : widths.GetAtVertices();
+    double const unit = FindUnit(scene);
+    eval::CascadeWidths scaled;
+    if (widths.IsConstant()) scaled.constant = widths.GetConstant() / unit;
+    else scaled.atVertices = Times(1.0 / unit, GetStartWidths(scene, widths));
     for (int level = 1; level <= maxLevels; ++level) {
         CascadeMesh const& mesh = levels.MakeNext();
         rows.push_back(far_ext::BuildCascadeLevel(mesh, rows.empty() ? std::vector<Index>{} : rows.back().vertices, options.boundary));
         ofVertex = Inherit(mesh, ofVertex);
         start = Interpolate(mesh, start);
         auto given = widths.SampleLevel(levels, start);
-        if (!given.empty()) factors.atLevels.push_back(std::move(given));
+        if (!given.empty()) scaled.atLevels.push_back(Times(1.0 / unit, std::move(given)));
     }
-    return eval::FindCriticalFactor(rows, scene.positions, factors, ofVertex, components.isClosed, CheckInterrupted);
+    return eval::FindCriticalFactor(rows, Times(1.0 / unit, scene.positions), scaled, ofVertex, components.isClosed, CheckInterrupted);
 }
 
 Scene RunOnce(Scene const& scene, Far::TopologyRefiner const& refiner, FilterWidths const& widths, SmoothOptions const& options, Job& job, SmoothReport& report) {
@@ -291,7 +310,7 @@ Scene RunOnce(Scene const& scene, Far::TopologyRefiner const& refiner, FilterWid
 }  // namespace
 
 bool SmoothReport::HasConverged() const {
-    return !collapse && std::all_of(levels.begin(), levels.end(), [](auto const& level) { return level.converged; });
+    return !HasCollapsed() && std::all_of(levels.begin(), levels.end(), [](auto const& level) { return level.converged; });
 }
 
 Scene Smooth(Scene const& scene, Far::TopologyRefiner const& refiner, FilterWidths const& widths, SmoothOptions const& options, Job& job, SmoothReport& report) {
@@ -299,16 +318,23 @@ Scene Smooth(Scene const& scene, Far::TopologyRefiner const& refiner, FilterWidt
     RefuseDefects(scene, base);
     if (options.isGraph) RequireGraph(scene, base);
     Scene fine = RunOnce(scene, refiner, widths, options, job, report);
-    if (report.collapse) {
+    // A sphere is at 0.72 of its radius where the width is 0.9 of the critical one. On a large mesh it costs too much to be sure.
+    constexpr double kSuspiciousRatio = 0.75;
+    double const suspicious = 4.0 * base.GetNumVertices() <= kMaxVertices ? kSuspiciousRatio : eval::kLeastRadiusRatio;
+    if (report.shrinkage.radiusRatio < suspicious) {
         double const factor = MeasureCriticalFactor(scene, base, widths, options);
-        report.collapse->criticalFactor = factor;
-        if (options.limitsWidth && factor > 0.0) {
-            SmoothCollapse const first = *report.collapse;
+        report.criticalFactor = factor;
+        if (factor == 1.0 && fine.positions.empty()) report.criticalFactor = std::nextafter(1.0, 0.0);  // the grids disagree: it did collapse
+        if (report.HasCollapsed() && options.limitsWidth && factor > 0.0) {
+            Index const vertex = report.shrinkage.firstVertex;
             double const limit = 0.95 * factor;  // a fixed point near the critical width takes many levels
             fine = RunOnce(scene, refiner, widths.Scaled(limit), options, job, report);
             report.limitedBy = limit;
-            job.Warn(fmt::format("{}: the width was reduced to {:.4g} of what was asked for; the component of vertex {} carries {:.4g}", scene.path, limit,
-                                 first.firstVertex, factor));
+            report.criticalFactor = factor / limit;
+            job.Warn(fmt::format("{}: the width was reduced to {:.4g} of what was asked for; the component of vertex {} carries {:.4g}", scene.path, limit, vertex,
+                                 factor));
+        } else if (report.HasCollapsed() && !options.keepsResult) {
+            fine = {};
         }
     }
     for (SmoothVolume const& volume : report.volumes) {

@@ -25,16 +25,15 @@ struct SmoothOptions {
     bool keepsCreases = false;
     bool preservesVolume = false;  ///< of closed components
     bool limitsWidth = false;      ///< takes 0.95 of the critical width where the width asked for is above it
-    bool keepsResult = false;      ///< goes on to the last level after a collapse
+    bool keepsResult = false;      ///< goes on to the last level when a component shrinks below half
     bool isSingle = false;         ///< Jacobi sweeps in single precision
 };
 
-/// A closed component that shrank below half of its mean radius: no fixed point can be expected any more (surface.md 3.1).
-struct SmoothCollapse {
-    Index firstVertex = 0;  ///< of the component, in the control mesh
-    int level = 0;          ///< where it was noticed
-    double radiusRatio = 0.0;
-    double criticalFactor = 0.0;  ///< measured: the largest factor on all widths that it carries
+/// The closed component that shrank most.
+struct SmoothShrinkage {
+    Index firstVertex = -1;    ///< of the component, in the control mesh; -1 without any
+    int level = 0;             ///< where it was least
+    double radiusRatio = 1.0;  ///< mean distance from its middle, over that of the start surface
 };
 
 /// A volume that was to be preserved.
@@ -49,9 +48,11 @@ struct SmoothReport {
     double meanEdge = 0.0;      ///< of the control mesh
     double largestWidth = 0.0;  ///< as used
     std::optional<double> limitedBy;  ///< factor on all widths that limitsWidth applied
-    std::optional<SmoothCollapse> collapse;
+    SmoothShrinkage shrinkage;
+    std::optional<double> criticalFactor;  ///< measured: the largest factor on all widths that the closed components carry
     std::vector<SmoothVolume> volumes;
-    bool HasConverged() const;
+    bool HasCollapsed() const { return criticalFactor && *criticalFactor < 1.0; }
+    bool HasConverged() const;  ///< and not collapsed
 };
 
 /// Refines a mesh and smooths it by curvature motion: the cascadic geometric filter.
@@ -60,6 +61,9 @@ struct SmoothReport {
 /// Result    an approximation of the filtered surface, with texture coordinates by the scene's rule and, as primvar
 ///           `width`, the filter width at each vertex. Creases and corners are left out unless they were kept.
 ///           Where a component collapsed and results are not to be kept, an empty mesh.
+///
+/// Collapse  A width above what a closed component carries has no fixed point: it shrinks to nothing with the levels. Where
+///           one shrank suspiciously, the critical width is measured on a grid of 10 000 vertices at most (surface.md 3.1).
 ///
 /// \param scene   of the scheme Loop where triangles are to stay triangles
 /// \param job     told of progress, and of a metric that was frozen, sharp corners, volumes that could not be kept

@@ -78,7 +78,11 @@ CascadeStepReport Cascade<Scalar>::Step(CascadeLevel const& level, int iteration
 template <class Scalar>
 CascadeStepReport Cascade<Scalar>::Repeat(int iterations) {
     CascadeStepReport const report = Solve(iterations);
-    if (_hasGivenWidths) ForEachRow(_level->GetNumRows(), [&](Index row) { _x[row][3] = _x0[row][3]; });
+    if (_options.width < 0.0) {
+        ForEachRow(_level->GetNumRows(), [&](Index row) {
+            if (_hasGivenWidths || _x0[row][3] == Scalar(0)) _x[row][3] = _x0[row][3];
+        });
+    }
     return report;
 }
 
@@ -166,13 +170,38 @@ std::vector<double> Cascade<Scalar>::GetWidths() const {
 }
 
 template <class Scalar>
-void Cascade<Scalar>::SetPositions(std::span<double const> positions) {
+CascadeRows<Scalar> Cascade<Scalar>::MakeRows(std::span<double const> values) const {
+    CascadeRows<Scalar> rows;
+    rows.reserve(_x.size());
     for (size_t row = 0; row < _x.size(); ++row) {
-        size_t const vertex = _level ? static_cast<size_t>(_level->vertices[row]) : row;
-        for (Eigen::Index c = _options.isGraph ? 2 : 0; c < 3; ++c) {
-            _x[row][c] = static_cast<Scalar>(positions[3 * vertex + static_cast<size_t>(c)]);
-        }
+        Index const vertex = _level ? _level->vertices[row] : static_cast<Index>(row);
+        double const* const value = &values[3 * static_cast<size_t>(vertex)];
+        rows.emplace_back(static_cast<Scalar>(value[0]), static_cast<Scalar>(value[1]), static_cast<Scalar>(value[2]), Scalar(0));
     }
+    return rows;
+}
+
+template <class Scalar>
+std::vector<double> Cascade<Scalar>::Filter(std::span<double const> values, int iterations) const {
+    CascadeRows<Scalar> const y0 = MakeRows(values);
+    CascadeRows<Scalar> y = y0;
+    if (_options.solver == CascadeSolver::Jacobi) {
+        CascadeRows<Scalar> next = y0;
+        for (int sweep = 0; sweep < iterations; ++sweep) {
+            SweepJacobi(*_level, _operator, y, y0, next);
+            y.swap(next);
+        }
+    } else if constexpr (std::is_same_v<Scalar, double>) {
+        if (_options.solver == CascadeSolver::Exact) SolveByCholesky(*_level, _operator, y0, y);
+        else SolveByConjugateGradients(*_level, _operator, y0, y, iterations, _options.tolerance);
+    }
+    return GetPublic(y);
+}
+
+template <class Scalar>
+void Cascade<Scalar>::SetPositions(std::span<double const> positions) {
+    CascadeRows<Scalar> const rows = MakeRows(positions);
+    ForEachRow(static_cast<Index>(_x.size()), [&](Index row) { _x[row].template head<3>() = rows[row].template head<3>(); });
 }
 
 template class Cascade<float>;

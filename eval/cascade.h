@@ -34,6 +34,7 @@ struct CascadeStepReport {
 ///
 /// Metric   Where it degenerates (an angle below a degree, or half of the start mesh's smallest if that is less; an area
 ///          below 1e-8 of the mean), the level and all finer ones keep that of the level before, interpolated.
+/// Widths   of vertices are filtered like positions, but 0 stays 0: where none was painted, nothing ever moves.
 /// Scalar   float: Jacobi only. All sums and solves have the same bits whatever the threads.
 /// Source   [Diewald02] Sec. 5 to 8
 template <class Scalar>
@@ -58,6 +59,11 @@ public:
     std::vector<double> GetStartPositions() const;
     std::vector<double> GetWidths() const;
 
+    /// The filter of the level reached, on other values: solves (M + L) Y = M Y0 with the operator of the last step.
+    ///
+    /// \param values  Y0, 3 per vertex; rows that stay keep theirs. \param iterations  as Step's
+    std::vector<double> Filter(std::span<double const> values, int iterations) const;
+
     /// Replaces the surface, e.g. by one of the right volume: the next level starts there. \param positions  as GetPositions
     void SetPositions(std::span<double const> positions);
 
@@ -69,6 +75,7 @@ public:
 private:
     CascadeStepReport Solve(int iterations);
     std::vector<double> GetPublic(CascadeRows<Scalar> const& rows) const;
+    CascadeRows<Scalar> MakeRows(std::span<double const> values) const;
     bool IsDegenerate(MetricQuality const& quality) const;
 
     CascadeOptions _options;

@@ -57,13 +57,21 @@ std::vector<double> MeasureVolumes(CascadeMesh const& mesh, std::span<int const>
     return volumes;
 }
 
+std::vector<double> FindVolumeNormals(CascadeMesh const& mesh, std::span<double const> positions) {
+    std::vector<double> normals;
+    normals.reserve(positions.size());
+    for (Vector const& gradient : FindGradients(mesh, positions)) {
+        Vector const normal = gradient.normalized();
+        normals.insert(normals.end(), {normal.x(), normal.y(), normal.z()});
+    }
+    return normals;
+}
+
 std::vector<char> RestoreVolumes(CascadeMesh const& mesh, std::span<int const> componentOfVertex, std::span<char const> isWanted,
-                                 std::span<double const> volumes, std::span<double const> reach, std::span<double> positions) {
+                                 std::span<double const> volumes, std::span<double const> directions, std::span<double> positions) {
     size_t const numComponents = isWanted.size();
     constexpr int kNewtonSteps = 20;
     constexpr double kTolerance = 1e-12, kMetTolerance = 1e-10;
-    std::vector<Vector> directions = FindGradients(mesh, positions);
-    for (size_t vertex = 0; vertex < directions.size(); ++vertex) directions[vertex] = reach[vertex] * directions[vertex].normalized();
     std::vector<char> isMet(numComponents, 1);
     std::vector<double> const start(positions.begin(), positions.end());
     std::vector<double> factors(numComponents, 0.0);
@@ -72,8 +80,8 @@ std::vector<char> RestoreVolumes(CascadeMesh const& mesh, std::span<int const> c
         auto const gradients = FindGradients(mesh, positions);
         std::vector<double> slopes(numComponents, 0.0);
         for (size_t vertex = 0; vertex < gradients.size(); ++vertex) {
-            if (reach[vertex] == 0.0) continue;
-            slopes[static_cast<size_t>(componentOfVertex[vertex])] += gradients[vertex].dot(directions[vertex]);
+            if (componentOfVertex[vertex] < 0) continue;
+            slopes[static_cast<size_t>(componentOfVertex[vertex])] += gradients[vertex].dot(At(directions, static_cast<Index>(vertex)));
         }
         bool isDone = true;
         for (size_t component = 0; component < numComponents; ++component) {
@@ -87,15 +95,13 @@ std::vector<char> RestoreVolumes(CascadeMesh const& mesh, std::span<int const> c
         }
         if (isDone || step == kNewtonSteps) break;
         for (size_t vertex = 0; vertex < gradients.size(); ++vertex) {
-            if (reach[vertex] == 0.0) continue;
+            if (componentOfVertex[vertex] < 0) continue;
             double const factor = factors[static_cast<size_t>(componentOfVertex[vertex])];
-            for (size_t c = 0; c < 3; ++c) {
-                positions[3 * vertex + c] = start[3 * vertex + c] + factor * directions[vertex][static_cast<Eigen::Index>(c)];
-            }
+            for (size_t i = 3 * vertex; i < 3 * vertex + 3; ++i) positions[i] = start[i] + factor * directions[i];
         }
     }
-    for (size_t vertex = 0; vertex < directions.size(); ++vertex) {  // what cannot be met, stays
-        if (reach[vertex] == 0.0 || isMet[static_cast<size_t>(componentOfVertex[vertex])]) continue;
+    for (size_t vertex = 0; vertex < componentOfVertex.size(); ++vertex) {  // what cannot be met, stays
+        if (componentOfVertex[vertex] < 0 || isMet[static_cast<size_t>(componentOfVertex[vertex])]) continue;
         std::copy_n(&start[3 * vertex], 3, &positions[3 * vertex]);
     }
     return isMet;

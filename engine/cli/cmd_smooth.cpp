@@ -104,12 +104,12 @@ void AddToReport(nlohmann::json& report, engine::SmoothReport const& found) {
     report["mean_edge"] = found.meanEdge;
     report["largest_width"] = found.largestWidth;
     if (found.limitedBy) report["width_limited_by"] = *found.limitedBy;
-    if (found.collapse) {
-        report["collapse"] = {{"first_vertex", found.collapse->firstVertex},
-                              {"level", found.collapse->level},
-                              {"radius_ratio", found.collapse->radiusRatio},
-                              {"critical_factor", found.collapse->criticalFactor},
-                              {"critical_width", found.collapse->criticalFactor * found.largestWidth}};
+    if (found.shrinkage.firstVertex >= 0) {
+        report["shrinkage"] = {{"first_vertex", found.shrinkage.firstVertex}, {"level", found.shrinkage.level}, {"radius_ratio", found.shrinkage.radiusRatio}};
+    }
+    if (found.criticalFactor) {
+        report["critical_factor"] = *found.criticalFactor;
+        report["critical_width"] = *found.criticalFactor * found.largestWidth;
     }
     for (auto const& volume : found.volumes) {
         report["volumes"].push_back({{"first_vertex", volume.firstVertex}, {"start", volume.start}, {"end", volume.end}, {"kept", volume.isMet}});
@@ -118,12 +118,11 @@ void AddToReport(nlohmann::json& report, engine::SmoothReport const& found) {
 
 /// What went wrong, and what helps, in one line.
 std::string Explain(std::string const& path, engine::SmoothReport const& found) {
-    if (found.collapse) {
-        auto const& collapse = *found.collapse;
+    if (found.HasCollapsed()) {
+        auto const& [vertex, level, ratio] = found.shrinkage;
         return fmt::format("{}: a filter of width {:.4g} collapses the component of vertex {} (mean radius {:.2g} of its own on level {}); it carries {:.4g} of that, "
                            "a width of {:.4g}. Use less, --limit-width or --preserve-volume",
-                           path, found.largestWidth, collapse.firstVertex, collapse.radiusRatio, collapse.level, collapse.criticalFactor,
-                           collapse.criticalFactor * found.largestWidth);
+                           path, found.largestWidth, vertex, ratio, level, *found.criticalFactor, *found.criticalFactor * found.largestWidth);
     }
     auto const& missed = *std::find_if(found.levels.begin(), found.levels.end(), [](auto const& level) { return !level.converged; });
     return fmt::format("{}: on level {} the residual is {:.2g} after {} iterations; use a larger --tolerance or --solver exact", path,
