@@ -133,7 +133,7 @@ void WarnOfSharpCorners(Scene const& scene, Far::TopologyLevel const& level, Cas
         if (sharpest < 0 || angles[vertex] < angles[sharpest]) sharpest = vertex;
     }
     if (count == 0) return;
-    job.Warn(fmt::format("{}: at vertex {}{} the faces' angles add up to {:.0f} degrees; below 180 the filter's triangles degenerate with the levels", scene.path,
+    job.Warn(fmt::format("{}: at vertex {}{} the faces' angles add up to {:.1f} degrees; below 180 the filter's triangles degenerate with the levels", scene.path,
                          sharpest, count > 1 ? fmt::format(" and {} more", count - 1) : "", angles[sharpest] * 180.0 / std::numbers::pi));
 }
 

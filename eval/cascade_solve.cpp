@@ -159,8 +159,9 @@ template double MeasureResidual(CascadeLevel const&, CascadeOperator<double> con
 CascadeSolve SolveByConjugateGradients(CascadeLevel const& level, Operator const& op, CascadeRows<double> const& x0,
                                        CascadeRows<double>& x, int maxIterations, double tolerance) {
     DoubleLanes const data = MeasureData(level, op, x0);
+    double const share = level.numSurface < level.numUnknowns ? std::sqrt(0.5) : 1.0;  // so that both together keep it
     auto const run = [&](Index begin, Index end) {
-        return ConjugateGradientRows(level, op, x0, x, begin, end).Run(data, maxIterations, tolerance);
+        return ConjugateGradientRows(level, op, x0, x, begin, end).Run(data, maxIterations, share * tolerance);
     };
     CascadeSolve const creases = run(level.numSurface, level.numUnknowns), surface = run(0, level.numSurface);
     return {std::max(creases.iterations, surface.iterations), std::hypot(creases.residual, surface.residual),
