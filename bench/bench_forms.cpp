@@ -57,14 +57,14 @@ double Run(char const* name, engine::Scene const& scene, int numRounds) {
     CheckCommutation(*refiner, forms);
     Index const numEdges = refiner->GetLevel(0).GetNumEdges();
     far_ext::StencilRows const rows = far_ext::MakeStencilRows(forms.s1, numEdges);
-    auto const one = eval::CompiledStencils::Compile(rows.GetView(), {.isForOneColumn = true}), four = eval::CompiledStencils::Compile(rows.GetView(), {});
+    auto const one = eval::CompiledStencils::Compile(rows.GetView(), {.isSliced = true});
     size_t const numFrom = static_cast<size_t>(numEdges), numTo = static_cast<size_t>(rows.GetNumStencils());
     auto const from = test::MakeRandomValues(numFrom, 2), fromFour = test::MakeRandomValues(4 * numFrom, 3);
     std::vector<float> ours(numTo), theirs(numTo), oursFour(4 * numTo), theirsFour(4 * numTo);
     EvaluateBySimd(one, from, ours, 1);
     EvaluateByOsd(rows, from, theirs, 1);
     Check(test::RelativeDifference(ours, theirs) < 1e-6, "S1 applied as OpenSubdiv applies it");
-    EvaluateBySimd(four, fromFour, oursFour, 4);
+    EvaluateBySimd(one, fromFour, oursFour, 4);
     EvaluateByOsd(rows, fromFour, theirsFour, 4);
     Check(test::RelativeDifference(oursFour, theirsFour) < 1e-6, "four forms");
     auto const far = test::MakeFarTable(*refiner, Far::StencilTableFactory::INTERPOLATE_VERTEX);
@@ -76,7 +76,7 @@ double Run(char const* name, engine::Scene const& scene, int numRounds) {
     size_t const build = rounds.Add("limn: S1 and S2 of a level", [&] { far_ext::BuildFormStencils(*refiner, 1); }, numOurs);
     size_t const buildFar = rounds.Add("Far::StencilTableFactory: S0 of it", [&] { test::MakeFarTable(*refiner, Far::StencilTableFactory::INTERPOLATE_VERTEX); }, numTheirs);
     size_t const apply = rounds.Add("limn: S1, one form", [&] { EvaluateBySimd(one, from, ours, 1); });
-    size_t const applyFour = rounds.Add("limn: S1, four forms at once", [&] { EvaluateBySimd(four, fromFour, oursFour, 4); });
+    size_t const applyFour = rounds.Add("limn: S1, four forms at once", [&] { EvaluateBySimd(one, fromFour, oursFour, 4); });
     size_t const osd = rounds.Add("Osd::CpuEvaluator: S1, length 1", [&] { EvaluateByOsd(rows, from, theirs, 1); });
     size_t const osdFour = rounds.Add("Osd::CpuEvaluator: S1, length 4", [&] { EvaluateByOsd(rows, fromFour, theirsFour, 4); });
     rounds.Run("entries");

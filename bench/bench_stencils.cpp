@@ -139,7 +139,7 @@ far_ext::StencilRows MakeFormRows(Index numRows) {
 
 void MeasureOneColumn(int numRounds) {
     auto const rows = MakeFormRows(3 << 20);
-    auto const ours = CompiledStencils::Compile(rows.GetView(), {.isForOneColumn = true});
+    auto const ours = CompiledStencils::Compile(rows.GetView(), {.isSliced = true});
     double const numRows = rows.GetNumStencils();
     fmt::print("\nOne column: {} rows, {:.1f} weights each\n", rows.GetNumStencils(), static_cast<double>(rows.GetWeights().size()) / numRows);
     auto const source = MakeValues(rows.GetNumControlVertices(), 1, 4);

@@ -22,7 +22,7 @@ CompiledStencils::CompiledStencils(far_ext::StencilGroups groups, Options option
         throw Error(ErrorCode::BadOption, fmt::format("a group of stencils has {} control vertices; at most {} are possible",
                                                       block.numColumns, far_ext::StencilGroups::kMaxColumns));
     }
-    if (options.isForOneColumn) {
+    if (options.isSliced) {
         _slices = MakeSlices(_groups);
         _groups.singles = {};
     }

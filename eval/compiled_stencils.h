@@ -12,8 +12,8 @@ namespace limn::eval {
 struct StencilJob;
 
 /// A stencil table in the forms that are evaluated fastest, side by side and chosen by counting:
-/// grouped rows with weight blocks kept once, and single rows with their weights kept once; for
-/// one-column data the single rows are sorted by size and sliced instead.
+/// grouped rows with weight blocks kept once, and single rows with their weights kept once; or, where
+/// single rows repeat little or data is one float per point, these sorted by size and sliced instead.
 ///
 /// Shape    GetNumStencils() rows over GetNumControlVertices() control vertices; 1 weight set (values), 3
 ///          (and first derivatives) or 6 (and second ones).
@@ -22,8 +22,9 @@ struct StencilJob;
 class CompiledStencils {
 public:
     struct Options {
-        /// Single rows in the form for data of one float per vertex. Either form takes any length.
-        bool isForOneColumn = false;
+        /// Single rows in slices of 16 of nearly one size: for one float per point, and for rows of many weights and sizes at
+        /// any multiple of four, as 1-forms have them. Either form takes any length.
+        bool isSliced = false;
     };
 
     /// Compiles rows already grouped, such as those of far_ext::BuildRefinedStencils.
@@ -73,7 +74,7 @@ private:
     static Slices MakeSlices(far_ext::StencilGroups const& groups);
 
     far_ext::StencilGroups _groups;
-    Slices _slices;  // with isForOneColumn, in place of the singles
+    Slices _slices;  // with isSliced, in place of the singles
 };
 
 }  // namespace limn::eval

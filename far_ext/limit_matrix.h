@@ -27,8 +27,8 @@ public:
     int GetNumStencils() const { return _rows.GetNumRows(); }
     std::vector<int> const& GetSizes() const { return _sizes; }
     std::vector<int> const& GetOffsets() const { return _rows.offsets; }  ///< with the end of the last row
-    std::vector<Index> const& GetControlIndices() const { return _rows.indices; }
-    std::vector<double> const& GetWeights() const { return _rows.weights; }
+    LargeArray<Index> const& GetControlIndices() const { return _rows.indices; }
+    LargeArray<double> const& GetWeights() const { return _rows.weights; }
     std::vector<float> MakeFloatWeights() const { return {_rows.weights.begin(), _rows.weights.end()}; }
 
     /// The same arrays as a matrix; valid as long as this is.

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "far_ext/large_array.h"
 #include "far_ext/types.h"
 
 namespace limn::far_ext {
@@ -44,8 +45,8 @@ private:
 /// weights[k] * points[indices[k]].
 struct SparseRows {
     std::vector<int> offsets{0};
-    std::vector<Index> indices;
-    std::vector<double> weights;
+    LargeArray<Index> indices;
+    LargeArray<double> weights;
 
     int GetNumRows() const { return static_cast<int>(offsets.size()) - 1; }
 

@@ -72,10 +72,10 @@ void ExpectOsdsValues(Far::TopologyRefiner const& refiner, RefinedStencilOptions
     auto const expected = EvaluateWithOsd(*far, source, 3);
     CompiledStencils const fromTopology(far_ext::BuildRefinedStencils(refiner, options));
     auto const fromFar = CompiledStencils::Compile(*far);
-    auto const forOneColumn = CompiledStencils::Compile(*far, {.isForOneColumn = true});
+    auto const slicedTable = CompiledStencils::Compile(*far, {.isSliced = true});
     EXPECT_LT(test::RelativeDifference(EvaluateCompiled(fromTopology, source, 3), expected), kBound) << name;
     EXPECT_LT(test::RelativeDifference(EvaluateCompiled(fromFar, source, 3), expected), kBound) << name;
-    EXPECT_LT(test::RelativeDifference(EvaluateCompiled(forOneColumn, source, 3), expected), kBound) << name;
+    EXPECT_LT(test::RelativeDifference(EvaluateCompiled(slicedTable, source, 3), expected), kBound) << name;
     EXPECT_LT(test::RelativeDifference(EvaluateRaw(*far, source, 3, 0, far->GetNumStencils()), expected), kBound) << name;
     for (auto kind : {EvaluatorKind::Simd, EvaluatorKind::OsdCpu}) {
         StencilEvaluator const evaluator(kind, far_ext::BuildRefinedStencils(refiner, options));
@@ -186,12 +186,13 @@ TEST(SimdEvaluator, ASubRangeIsThoseRowsOfTheWhole) {
         auto const refiner = test::RefineUniformly(scene.cage, level);
         auto const far = MakeFarTable(*refiner, Factory::INTERPOLATE_VERTEX);
         CompiledStencils const compiled(far_ext::BuildRefinedStencils(*refiner));
-        CompiledStencils const sliced(far_ext::BuildRefinedStencils(*refiner), {.isForOneColumn = true});
+        CompiledStencils const sliced(far_ext::BuildRefinedStencils(*refiner), {.isSliced = true});
         int const count = far->GetNumStencils();
         for (int length = 1; length <= 9; ++length) {
             auto const source = test::MakeRandomValues(static_cast<size_t>(far->GetNumControlVertices()) * length, 3);
             auto const whole = EvaluateCompiled(compiled, source, length), slicedWhole = EvaluateCompiled(sliced, source, length);
             auto const rawWhole = EvaluateRaw(*far, source, length, 0, count);
+            EXPECT_LT(test::RelativeDifference(slicedWhole, rawWhole), 1e-6) << length;
             for (auto const& [start, end] : {std::pair{0, 1}, {1, 2}, {7, 60}, {count / 2, count}, {5, 5}, {count - 1, count}}) {
                 auto const expected = [&](std::vector<float> values) {
                     std::fill(values.begin(), values.begin() + start * length, kUntouched);
@@ -243,7 +244,7 @@ TEST(SimdEvaluator, SameBytesOnEveryInstructionSetAndNumberOfThreads) {
             auto const refiner = test::RefineUniformly(scene.cage, level);
             auto const far = MakeFarTable(*refiner, Factory::INTERPOLATE_VERTEX);
             CompiledStencils const compiled(far_ext::BuildRefinedStencils(*refiner));
-            CompiledStencils const sliced(far_ext::BuildRefinedStencils(*refiner), {.isForOneColumn = true});
+            CompiledStencils const sliced(far_ext::BuildRefinedStencils(*refiner), {.isSliced = true});
             for (int length : {1, 3, 6}) {
                 auto const source = test::MakeRandomValues(static_cast<size_t>(far->GetNumControlVertices()) * length, 5);
                 std::vector<float> first;
@@ -324,8 +325,8 @@ TEST(SimdEvaluator, ManyRowsOfUnequalSizesAreSliced) {
         expected[row] = static_cast<float>(sum);
     }
     EXPECT_LT(test::RelativeDifference(raw, expected), 1e-6);
-    for (bool isForOneColumn : {false, true}) {
-        auto const table = CompiledStencils::Compile(rows.GetView(), {isForOneColumn});
+    for (bool isSliced : {false, true}) {
+        auto const table = CompiledStencils::Compile(rows.GetView(), {isSliced});
         EXPECT_LT(test::RelativeDifference(EvaluateCompiled(table, source, 1), expected), 1e-6);
     }
 }
