@@ -94,7 +94,8 @@ private:
     void AddTriangle(Spoke<Scalar> const& a, Spoke<Scalar> const& b, int i, int j, Scalar share) {
         Scalar const ab = Dot<Scalar>(a.vector, b.vector);
         Scalar const cross = std::sqrt(std::max(a.square * b.square - ab * ab, Scalar(0)));
-        Scalar const doubleArea = std::max(cross, kLeastSine<Scalar> * (a.square + b.square));
+        // The bound is half of the sum of the squared edges: the same from all three corners, so that L is symmetric.
+        Scalar const doubleArea = std::max(cross, kLeastSine<Scalar> * (a.square + b.square - ab));
         Scalar const inverse = doubleArea > Scalar(0) ? Scalar(1) / doubleArea : Scalar(0);
         Scalar const cotA = (a.square - ab) * inverse, cotB = (b.square - ab) * inverse;
         Scalar diffusion = _a;
