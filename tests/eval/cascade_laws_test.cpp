@@ -192,6 +192,39 @@ TEST(CascadeOperator, ALinearWidthEntersByItsExactMean) {
     }
 }
 
+// A crease of a straight line has M = half of its two edges, and for linear u the integral of sigma^2 / 2 |u'|^2 along it with
+// linear sigma; two Gauss points are exact for it.
+TEST(CascadeOperator, ACreaseIsALineOfItsOwn) {
+    engine::Scene const scene = test::MakeLattice(4, 4, Sdc::SCHEME_CATMARK);  // 10 to 14 is the middle line
+    auto mesh = test::MakeSameMesh(scene);
+    for (Index i = 10; i < 14; ++i) mesh.creases.push_back({i, i + 1});
+    CascadeLevel const level = far_ext::BuildCascadeLevel(mesh, {}, BoundaryRule::Fixed);
+    auto positions = scene.positions;
+    for (Index i = 10; i < 15; ++i) positions[3 * static_cast<size_t>(i)] = 0.1 * (i - 10) * (i - 10);  // edges .1, .3, .5, .7
+    std::vector<double> widths(25, 0.4);
+    for (Index i = 10; i < 15; ++i) widths[static_cast<size_t>(i)] = 0.1 * (i - 9);
+    eval::Cascade<double> cascade(positions, widths, {.solver = CascadeSolver::Jacobi});
+    cascade.Step(level, 0);
+    auto const& op = cascade.GetOperator();
+    ASSERT_EQ(level.numUnknowns - level.numSurface, 3);
+    for (Index row = level.numSurface; row < level.numUnknowns; ++row) {
+        Index const vertex = level.vertices[row];
+        double mass = 0.0;
+        for (int k = level.offsets[row]; k < level.offsets[row + 1]; ++k) {
+            Index const other = level.vertices[level.neighbours[k]];
+            double const length = (PointAt(positions, vertex) - PointAt(positions, other)).norm();
+            double integral = 0.0;
+            for (double sign : {-1.0, 1.0}) {
+                double const t = 0.5 + sign * 0.5 / std::sqrt(3.0), h = (1 - t) * widths[static_cast<size_t>(vertex)] + t * widths[static_cast<size_t>(other)];
+                integral += 0.5 * length * h * h / 2;
+            }
+            EXPECT_NEAR(op.edges[k], integral / (length * length), 1e-14);  // u' = 1 / length
+            mass += length / 2;
+        }
+        EXPECT_NEAR(op.masses[row], mass, 1e-14);
+    }
+}
+
 // ---- motions ------------------------------------------------------------------------------------
 
 TEST(CascadeLaws, RotateThenFilterIsFilterThenRotate) {
