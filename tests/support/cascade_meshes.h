@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <list>
@@ -97,6 +98,38 @@ inline far_ext::CascadeMesh MakeSameMesh(engine::Scene const& scene) {
 
 inline Eigen::Vector3d PointAt(std::vector<double> const& points, Index vertex) {
     return Eigen::Map<Eigen::Vector3d const>(&points[3 * static_cast<size_t>(vertex)]);
+}
+
+inline double const kPi = std::acos(-1.0);
+
+/// Solvers with their tolerances; at 0 conjugate gradients run by count, without a preconditioner.
+inline std::vector<std::pair<eval::CascadeSolver, double>> const kSolvers{{eval::CascadeSolver::Exact, 0.0},
+                                                                          {eval::CascadeSolver::ConjugateGradients, 0.0},
+                                                                          {eval::CascadeSolver::ConjugateGradients, 1e-6},
+                                                                          {eval::CascadeSolver::Jacobi, 0.0}};
+
+inline std::vector<double> Transform(std::vector<double> points, Eigen::Matrix3d const& matrix, Eigen::Vector3d const& shift) {
+    for (size_t i = 0; i < points.size(); i += 3) {
+        Eigen::Map<Eigen::Vector3d> point(&points[i]);
+        point = (matrix * point + shift).eval();
+    }
+    return points;
+}
+
+/// The least angle of a mesh of triangles.
+inline double MinAngleDegrees(std::vector<double> const& points, far_ext::CascadeMesh const& mesh) {
+    double least = kPi;
+    for (size_t corner = 0; corner < mesh.faces.size(); ++corner) {
+        size_t const face = corner / 3 * 3, k = corner - face;
+        Eigen::Vector3d const at = PointAt(points, mesh.faces[corner]);
+        Eigen::Vector3d const a = PointAt(points, mesh.faces[face + (k + 1) % 3]) - at, b = PointAt(points, mesh.faces[face + (k + 2) % 3]) - at;
+        least = std::min(least, std::atan2(a.cross(b).norm(), a.dot(b)));
+    }
+    return least * 180 / kPi;
+}
+
+inline bool AreFinite(std::vector<double> const& points) {
+    return std::all_of(points.begin(), points.end(), [](double x) { return std::isfinite(x); });
 }
 
 inline double MeanRadius(std::vector<double> const& points) {
