@@ -105,7 +105,7 @@ private:
         Scalar const cross = std::sqrt(crossSquare);
         // The bound is half of the sum of the squared edges: the same from all three corners, so that L is symmetric.
         Scalar const doubleArea = std::max(cross, kLeastSine<Scalar> * (a.square + b.square - ab));
-        Scalar const inverse = doubleArea > Scalar(0) ? Scalar(1) / doubleArea : Scalar(0);
+        Scalar const inverse = doubleArea >= std::numeric_limits<Scalar>::min() ? Scalar(1) / doubleArea : Scalar(0);
         Scalar const cotA = (a.square - ab) * inverse, cotB = (b.square - ab) * inverse;
         Scalar diffusion = _a;
         if constexpr (IsLocal) {  // the mean of sigma^2 / 2 of a linear sigma

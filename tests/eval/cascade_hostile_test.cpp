@@ -1,5 +1,7 @@
 #include "eval/cascade.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "support/cascade_meshes.h"
@@ -99,6 +101,58 @@ TEST(CascadeHostile, TinyAndHugeMeshesHaveTheSameShape) {
     }
     CascadeOptions const sweeps{.solver = CascadeSolver::Jacobi};
     for (double scale : {1e-8, 1e-4, 1e4, 1e8}) EXPECT_LT(test::LargestDifference(filter(1.0f, sweeps, scale), filter(1.0f, sweeps, 1.0)), 1e-4) << scale;
+}
+
+// Where squares of lengths leave the range of numbers nothing moves any more; inverses of what is left of areas would.
+TEST(CascadeHostile, MeshesTooTinyForTheirSquaresStayFinite) {
+    auto const scene = LoadMesh("gridholetri");
+    auto const levels = QuarterLevels(scene, 2, BoundaryRule::Fixed);
+    auto const run = [&]<class Scalar>(Scalar, CascadeOptions options, double scale) {
+        options.width = 0.2 * scale;
+        eval::Cascade<Scalar> cascade(Transform(scene.positions, scale * Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero()), {}, options);
+        for (auto const& level : levels) cascade.Step(level, 30);
+        auto const points = cascade.GetPositions();
+        EXPECT_TRUE(AreFinite(points)) << scale;
+        EXPECT_LE(test::BoxDiagonal(points), 1.01 * scale * test::BoxDiagonal(scene.positions)) << scale;
+    };
+    for (int exponent = -320; exponent < -30; exponent += 2) {
+        for (auto const& [solver, tolerance] : kSolvers) run(1.0, {.solver = solver, .tolerance = tolerance}, std::pow(10.0, exponent));
+    }
+    for (int exponent = -40; exponent < -6; ++exponent) run(1.0f, {.solver = CascadeSolver::Jacobi}, std::pow(10.0, exponent));
+}
+
+TEST(CascadeHostile, WhatIsNoNumberOrTooLargeIsRefused) {
+    auto const scene = LoadMesh("icosa");
+    auto const bad = static_cast<int>(ErrorCode::BadMesh);
+    auto const code = [&](double coordinate, double width, bool isFloat = false) {
+        auto points = scene.positions;
+        points[7] = coordinate;
+        return test::CodeOf([&] {
+            CascadeOptions const options{.solver = CascadeSolver::Jacobi, .width = width};
+            if (isFloat) eval::Cascade<float>(points, {}, options);
+            else eval::Cascade<double>(points, {}, options);
+        });
+    };
+    double const infinity = std::numeric_limits<double>::infinity(), notANumber = std::numeric_limits<double>::quiet_NaN();
+    for (double coordinate : {notANumber, infinity, -infinity, 1e150, -1e49}) EXPECT_EQ(code(coordinate, 0.1), bad) << coordinate;
+    for (double width : {notANumber, infinity, 1e150}) EXPECT_EQ(code(1.0, width), bad) << width;
+    EXPECT_EQ(code(1e47, 0.1), -1);
+    EXPECT_EQ(code(1e10, 0.1, true), bad);
+    EXPECT_EQ(code(1e9, 0.1, true), -1);
+    std::vector<double> widths(12, 0.1);
+    widths[5] = notANumber;
+    EXPECT_EQ(test::CodeOf([&] { eval::Cascade<double>(scene.positions, widths, {}); }), bad);
+}
+
+// At the largest size that is let in, every solver's numbers are finite.
+TEST(CascadeHostile, TheLargestMeshesStayFinite) {
+    for (auto const& [scene, size] : {std::pair{LoadMesh("icosa"), 1.6180339887498949}, {LoadMesh("gridholetri"), 7.0}}) {
+        auto large = scene;
+        large.positions = Transform(scene.positions, 1e48 / size * Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
+        ExpectFinite(large, 1e47, "1e48");
+        large.positions = Transform(scene.positions, 1e9 / size * Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
+        ExpectFinite<float>(large, 1e8, "1e9");
+    }
 }
 
 TEST(CascadeHostile, APointStaysAPoint) {

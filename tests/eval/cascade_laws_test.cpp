@@ -283,6 +283,24 @@ TEST(CascadeLaws, IterationsDoNotDependOnWhereAMeshLies) {
     EXPECT_NEAR(found[0][1], found[1][1], 1e-2 * found[0][1]);
 }
 
+// Float has 7 digits; the differences that sweeps add lose some of them.
+TEST(CascadeLaws, SweepsInSinglePrecisionAreThoseInDouble) {
+    for (bool isQuads : {false, true}) {
+        auto const scene = isQuads ? test::MakeGridWithHole(6, 5) : LoadMesh("torustri");
+        auto const levels = QuarterLevels(scene, 3, BoundaryRule::Fixed);
+        CascadeOptions const options{.solver = CascadeSolver::Jacobi, .width = 0.2};
+        eval::Cascade<float> single(scene.positions, {}, options);
+        eval::Cascade<double> twice(scene.positions, {}, options);
+        for (auto const& level : levels) {
+            auto const a = single.Step(level, 3), b = twice.Step(level, 3);
+            EXPECT_NEAR(a.residual, b.residual, 1e-6);
+            EXPECT_GT(b.residual, 1e-5);
+        }
+        EXPECT_LT(test::LargestDifference(single.GetPositions(), twice.GetPositions()), 2e-6 * test::BoxDiagonal(scene.positions));
+        EXPECT_GT(test::LargestDifference(twice.GetPositions(), twice.GetStartPositions()), 1e-2);
+    }
+}
+
 // ---- fixed points -------------------------------------------------------------------------------
 
 // On a polyhedron whose vertices are all alike, L X points along X. X . L X over all vertices is a times twice the area (the
