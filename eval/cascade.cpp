@@ -5,6 +5,8 @@
 #include <limits>
 #include <type_traits>
 
+#include <fmt/format.h>
+
 #include "eval/cascade_solve.h"
 #include "far_ext/error.h"
 
@@ -13,6 +15,18 @@ namespace limn::eval {
 namespace {
 
 using far_ext::CascadeLevel;
+
+/// What positions and widths may be: the product of two squares has to fit into Scalar, in double sums of sixth powers.
+template <class Scalar>
+constexpr double kLargestLength = std::is_same_v<Scalar, float> ? 1e9 : 1e48;
+
+template <class Scalar>
+void CheckLengths(std::span<double const> values, char const* what) {
+    for (double value : values) {
+        if (std::abs(value) <= kLargestLength<Scalar>) continue;
+        throw Error(ErrorCode::BadMesh, fmt::format("Cascade: {} of {}; they must be numbers up to {}", what, value, kLargestLength<Scalar>));
+    }
+}
 
 constexpr double kLeastAngleRadians = 3.14159265358979323846 / 180.0, kLeastAreaRatio = 1e-8;
 
@@ -40,6 +54,8 @@ Cascade<Scalar>::Cascade(std::span<double const> positions, std::span<double con
     if (std::is_same_v<Scalar, float> && options.solver != CascadeSolver::Jacobi) {
         throw Error(ErrorCode::BadOption, "Cascade: in single precision only Jacobi sweeps are done");
     }
+    CheckLengths<Scalar>(positions, "a coordinate");
+    CheckLengths<Scalar>(isLocal ? widths : std::span(&options.width, 1), "a width");
     for (size_t i = 0; i < positions.size() / 3; ++i) {
         Scalar const h = isLocal ? static_cast<Scalar>(widths[i]) : Scalar(0);
         auto const at = [&](size_t c) { return static_cast<Scalar>(positions[3 * i + c]); };

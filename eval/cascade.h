@@ -42,7 +42,8 @@ class Cascade {
 public:
     /// \param positions  3 per vertex of the start mesh
     /// \param widths     sigma per vertex; empty with a width for all
-    /// \throws Error     BadOption: sizes that do not fit, a solver that Scalar does not have
+    /// \throws Error     BadOption: sizes that do not fit, a solver that Scalar does not have.  BadMesh: what is no number, or
+    ///                   beyond 1e48 (in float 1e9)
     Cascade(std::span<double const> positions, std::span<double const> widths, CascadeOptions const& options);
 
     /// Goes to the next level. \param level  kept by reference until the next call

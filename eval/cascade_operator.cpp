@@ -35,6 +35,12 @@ inline Scalar Dot(CascadeRow<Scalar> const& a, CascadeRow<Scalar> const& b) {
     return (p[0] + p[1]) + p[2];
 }
 
+template <class Scalar>
+Scalar FindCrossSquare(CascadeRow<Scalar> const& a, CascadeRow<Scalar> const& b) {
+    Scalar const x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+    return (x * x + y * y) + z * z;
+}
+
 /// Builds the operator's rows one after another. IsLocal: widths come with the rows.
 template <class Scalar, bool IsLocal>
 class RowBuilder {
@@ -93,9 +99,13 @@ private:
     /// The triangle of the middle and spokes i and j; `share` is half of its weight.
     void AddTriangle(Spoke<Scalar> const& a, Spoke<Scalar> const& b, int i, int j, Scalar share) {
         Scalar const ab = Dot<Scalar>(a.vector, b.vector);
-        Scalar const cross = std::sqrt(std::max(a.square * b.square - ab * ab, Scalar(0)));
-        Scalar const doubleArea = std::max(cross, kLeastSine<Scalar> * (a.square + b.square));
-        Scalar const inverse = doubleArea > Scalar(0) ? Scalar(1) / doubleArea : Scalar(0);
+        Scalar const squares = a.square * b.square;
+        Scalar crossSquare = squares - ab * ab;
+        if (crossSquare < Scalar(0.01) * squares) crossSquare = FindCrossSquare<Scalar>(a.vector, b.vector);  // the difference cancels
+        Scalar const cross = std::sqrt(crossSquare);
+        // The bound is half of the sum of the squared edges: the same from all three corners, so that L is symmetric.
+        Scalar const doubleArea = std::max(cross, kLeastSine<Scalar> * (a.square + b.square - ab));
+        Scalar const inverse = doubleArea >= std::numeric_limits<Scalar>::min() ? Scalar(1) / doubleArea : Scalar(0);
         Scalar const cotA = (a.square - ab) * inverse, cotB = (b.square - ab) * inverse;
         Scalar diffusion = _a;
         if constexpr (IsLocal) {  // the mean of sigma^2 / 2 of a linear sigma

@@ -2,13 +2,11 @@
 
 #include <list>
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 #include <opensubdiv/osd/cpuEvaluator.h>
 
-#include "far_ext/bisection.h"
 #include "far_ext/cascade_stencils.h"
-#include "support/refined.h"
+#include "support/cascade_meshes.h"
 
 namespace limn {
 namespace {
@@ -17,12 +15,12 @@ using eval::CascadeOptions;
 using eval::CascadeSolver;
 using far_ext::BoundaryRule;
 using far_ext::CascadeLevel;
-
-engine::Scene LoadMesh(std::string const& name) {
-    engine::Scene scene = test::LoadData("cascade/" + name + ".obj");
-    scene.cage.scheme = Sdc::SCHEME_LOOP;
-    return scene;
-}
+using test::BisectLevels;
+using test::EdgeLengths;
+using test::Filter;
+using test::LoadMesh;
+using test::MeasureEdges;
+using test::QuarterLevels;
 
 std::vector<double> LoadReference(std::string const& name) {
     Eigen::MatrixXd const points = test::LoadGoldenPoints("cascade/" + name + ".obj");
@@ -31,60 +29,6 @@ std::vector<double> LoadReference(std::string const& name) {
         for (Eigen::Index c = 0; c < 3; ++c) flat.push_back(points(i, c));
     }
     return flat;
-}
-
-struct EdgeLengths {
-    double mean = 0.0;
-    std::vector<double> atVertices;  // mean of those at each vertex
-};
-
-EdgeLengths MeasureEdges(engine::Scene const& scene) {
-    auto const refiner = test::MakeRefiner(scene, 0);
-    auto const level = refiner->GetLevel(0);
-    EdgeLengths lengths;
-    std::vector<double> counts(static_cast<size_t>(level.GetNumVertices()), 0.0);
-    lengths.atVertices.assign(counts.size(), 0.0);
-    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
-        auto const ends = level.GetEdgeVertices(edge);
-        double const* const p = &scene.positions[3 * static_cast<size_t>(ends[0])];
-        double const* const q = &scene.positions[3 * static_cast<size_t>(ends[1])];
-        double const length = std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
-        lengths.mean += length / level.GetNumEdges();
-        for (Index end : {ends[0], ends[1]}) {
-            lengths.atVertices[static_cast<size_t>(end)] += length;
-            counts[static_cast<size_t>(end)] += 1.0;
-        }
-    }
-    for (size_t i = 0; i < counts.size(); ++i) lengths.atVertices[i] /= counts[i];
-    return lengths;
-}
-
-std::list<CascadeLevel> QuarterLevels(engine::Scene const& scene, int count, BoundaryRule rule) {
-    auto const refiner = test::MakeRefiner(scene, count);
-    std::list<CascadeLevel> levels;
-    for (int k = 1; k <= count; ++k) {
-        std::vector<Index> const coarse = k == 1 ? std::vector<Index>{} : levels.back().vertices;
-        levels.push_back(far_ext::BuildCascadeLevel(far_ext::MakeCascadeMesh(*refiner, k), coarse, rule));
-    }
-    return levels;
-}
-
-std::list<CascadeLevel> BisectLevels(engine::Scene const& scene, int count, BoundaryRule rule) {
-    far_ext::Bisection bisection(scene.cage.numVertices, scene.cage.faceVertices, scene.positions, {}, {});
-    std::list<CascadeLevel> levels;
-    for (int k = 1; k <= count; ++k) {
-        std::vector<Index> const coarse = k == 1 ? std::vector<Index>{} : levels.back().vertices;
-        levels.push_back(far_ext::BuildCascadeLevel(bisection.Refine(), coarse, rule));
-    }
-    return levels;
-}
-
-std::vector<double> Filter(engine::Scene const& scene, std::list<CascadeLevel> const& levels, CascadeOptions const& options,
-                        std::vector<double> const& widths = {}, int finestSweeps = 1) {
-    eval::Cascade<double> cascade(scene.positions, widths, options);
-    int left = static_cast<int>(levels.size());
-    for (CascadeLevel const& level : levels) cascade.Step(level, eval::CountSweeps(options.solver, finestSweeps, --left, false));
-    return cascade.GetPositions();
 }
 
 struct Golden {
@@ -175,18 +119,13 @@ TEST(Cascade, ASphereShrinksToItsFixedPoint) {
     }
     auto const sphere = test::MakeScene(points, faces, Sdc::SCHEME_LOOP);
     auto const levels = QuarterLevels(sphere, 2, BoundaryRule::Fixed);
-    auto const meanRadius = [](std::vector<double> const& p) {
-        double sum = 0.0;
-        for (size_t i = 0; i < p.size(); i += 3) sum += std::hypot(p[i], p[i + 1], p[i + 2]);
-        return 3.0 * sum / static_cast<double>(p.size());
-    };
     double const widths[] = {0.1, 0.25, 0.4}, twoLevels[] = {0.98721, 0.93124, 0.81972}, settled[] = {0.98720, 0.93012, 0.79640};
     for (size_t i = 0; i < 3; ++i) {
         eval::Cascade<double> cascade(sphere.positions, {}, {.tolerance = 1e-10, .width = widths[i]});
         for (auto const& level : levels) cascade.Step(level, 1000);
-        EXPECT_NEAR(meanRadius(cascade.GetPositions()), twoLevels[i], 1e-3);
+        EXPECT_NEAR(test::MeanRadius(cascade.GetPositions()), twoLevels[i], 1e-3);
         for (int repeat = 0; repeat < 30; ++repeat) cascade.Repeat(1000);
-        EXPECT_NEAR(meanRadius(cascade.GetPositions()), settled[i], 1e-3);
+        EXPECT_NEAR(test::MeanRadius(cascade.GetPositions()), settled[i], 1e-3);
     }
 }
 

@@ -13,6 +13,7 @@
 #include "far_ext/refiner.h"
 #include "far_ext/sparse_rows.h"
 #include "support/files.h"
+#include "support/fit_meshes.h"
 #include "support/meshes.h"
 
 namespace limn::test {
@@ -86,19 +87,6 @@ inline std::vector<double> SubdivideToSphere(Far::TopologyRefiner const& refiner
         for (size_t c = 0; c < 3; ++c) points[i + c] /= length;
     }
     return points;
-}
-
-/// A double pyramid: a ring of n vertices between two tips of valence n.
-inline engine::Scene MakeBipyramid(int n) {
-    std::vector<double> positions{0, 0, 1, 0, 0, -1};
-    std::vector<std::vector<Index>> faces;
-    double const pi = std::acos(-1.0);
-    for (int i = 0; i < n; ++i) {
-        positions.insert(positions.end(), {std::cos(2 * pi * i / n), std::sin(2 * pi * i / n), 0});
-        faces.push_back({0, 2 + i, 2 + (i + 1) % n});
-        faces.push_back({1, 2 + (i + 1) % n, 2 + i});
-    }
-    return MakeScene(std::move(positions), faces, Sdc::SCHEME_LOOP);
 }
 
 /// The code of the Error that `act` throws; -1 if it throws none.
