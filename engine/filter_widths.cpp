@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <set>
 
 #include <Eigen/Core>
@@ -11,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "engine/images/images_module.h"
+#include "engine/io/edge_values.h"
 #include "engine/io/number_table.h"
 #include "far_ext/error.h"
 
@@ -27,10 +27,8 @@ double Length(Scene const& scene, Far::TopologyLevel const& level, Index edge) {
     return (At(scene.positions, ends[0]) - At(scene.positions, ends[1])).norm();
 }
 
-double GetWidth(NumberTable const& table, std::string const& path, size_t row, size_t column) {
-    double const width = table.Get(row, column);
-    if (width >= 0.0) return width;
-    throw Error(ErrorCode::BadMesh, fmt::format("{}:{}: width {} is negative; a filter width is 0 or more", path, table.lines[row], width));
+void CheckWidth(double width, std::string const& path, size_t line) {
+    if (width < 0.0) throw Error(ErrorCode::BadMesh, fmt::format("{}:{}: width {} is negative; a filter width is 0 or more", path, line, width));
 }
 
 double Distance(Vector const& point, std::array<std::array<double, 3>, 2> const& segment) {
@@ -92,30 +90,18 @@ FilterWidths FilterWidths::ReadMap(std::string const& path, Scene const& scene) 
             throw Error(ErrorCode::BadMesh, fmt::format("{}:{}: vertex {} comes twice, first in line {}", path, table.lines[row], vertex, lines[vertex]));
         }
         lines[vertex] = table.lines[row];
-        widths[vertex] = GetWidth(table, path, row, 1);
+        widths[vertex] = table.Get(row, 1);
+        CheckWidth(widths[vertex], path, table.lines[row]);
     }
     return AtVertices(std::move(widths));
 }
 
 FilterWidths FilterWidths::ReadEdges(std::string const& path, Scene const& scene, Far::TopologyLevel const& level) {
-    auto const table = ReadNumberTable(path, {{"v0", "v1", "width"}});
     FilterWidths widths;
-    std::map<Index, size_t> lines;
-    for (size_t row = 0; row < table.GetNumRows(); ++row) {
-        int const count = level.GetNumVertices();
-        Index const from = GetIndex(table, path, row, 0, count, "vertex"), to = GetIndex(table, path, row, 1, count, "vertex");
-        Index const edge = level.FindEdge(from, to);
-        if (edge == Far::INDEX_INVALID) {
-            throw Error(ErrorCode::BadMesh, fmt::format("{}:{}: there is no edge from vertex {} to {}", path, table.lines[row], from, to));
-        }
-        auto const [known, isNew] = lines.try_emplace(edge, table.lines[row]);
-        if (!isNew) {
-            throw Error(ErrorCode::BadMesh,
-                        fmt::format("{}:{}: the edge from vertex {} to {} comes twice, first in line {}", path, table.lines[row], from, to, known->second));
-        }
-        double const width = GetWidth(table, path, row, 2);
-        widths._largest = std::max(widths._largest, width);
-        if (width > 0.0) widths._edges.push_back({{from, to}, width});
+    for (EdgeValue const& row : ReadEdgeTable(path, "width", level)) {
+        CheckWidth(row.value, path, row.line);
+        widths._largest = std::max(widths._largest, row.value);
+        if (row.value > 0.0) widths._edges.push_back({{row.from, row.to}, row.value});
     }
     widths.ReachFaces(scene, level);
     return widths;

@@ -11,10 +11,10 @@
 
 namespace limn::engine {
 
-std::vector<double> ReadEdgeValues(std::string const& path, Far::TopologyLevel const& level) {
-    NumberTable const table = ReadNumberTable(path, {{"v0", "v1", "value"}});
-    std::vector<double> form(static_cast<size_t>(level.GetNumEdges()), 0.0);
-    std::vector<size_t> lineOfEdge(form.size(), 0);
+std::vector<EdgeValue> ReadEdgeTable(std::string const& path, char const* column, Far::TopologyLevel const& level) {
+    NumberTable const table = ReadNumberTable(path, {{"v0", "v1", column}});
+    std::vector<EdgeValue> values;
+    std::vector<size_t> lineOfEdge(static_cast<size_t>(level.GetNumEdges()), 0);
     for (size_t row = 0; row < table.GetNumRows(); ++row) {
         int const count = level.GetNumVertices();
         Index const from = GetIndex(table, path, row, 0, count, "vertex"), to = GetIndex(table, path, row, 1, count, "vertex");
@@ -27,8 +27,14 @@ std::vector<double> ReadEdgeValues(std::string const& path, Far::TopologyLevel c
                                                         lineOfEdge[edge]));
         }
         lineOfEdge[edge] = table.lines[row];
-        form[edge] = far_ext::GetSignFrom(level, edge, from) * table.Get(row, 2);
+        values.push_back({edge, from, to, table.Get(row, 2), table.lines[row]});
     }
+    return values;
+}
+
+std::vector<double> ReadEdgeValues(std::string const& path, Far::TopologyLevel const& level) {
+    std::vector<double> form(static_cast<size_t>(level.GetNumEdges()), 0.0);
+    for (EdgeValue const& row : ReadEdgeTable(path, "value", level)) form[row.edge] = far_ext::GetSignFrom(level, row.edge, row.from) * row.value;
     return form;
 }
 

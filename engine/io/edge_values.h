@@ -10,10 +10,22 @@
 
 namespace limn::engine {
 
+/// A row of a table of edges.
+struct EdgeValue {
+    Index edge, from, to;
+    double value;
+    size_t line;
+};
+
+/// Rows of a table `v0,v1,COLUMN`, as they come.
+///
+/// \throws Error  BadMesh: an edge that does not exist or comes twice (file and line named).  Io
+std::vector<EdgeValue> ReadEdgeTable(std::string const& path, char const* column, Far::TopologyLevel const& level);
+
 /// A 1-form from a table `v0,v1,value`: what a field does along the edges from v0 to v1; 0 on edges that are not listed.
 ///
 /// \return per edge of the level, in the direction of far_ext/form_operators.h
-/// \throws Error  BadMesh: an edge that does not exist or comes twice (file and line named).  Io
+/// \throws Error  as above
 std::vector<double> ReadEdgeValues(std::string const& path, Far::TopologyLevel const& level);
 
 /// The same table of a 1-form, all edges, each from its lower vertex; numbers read back the same.
