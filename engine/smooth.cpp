@@ -167,7 +167,8 @@ public:
         _job.Start("smooth", total);
         for (_level = 1; _level <= _options.levels; ++_level) {
             Step(report);
-            _job.Advance(GetEffort(_level));
+            AdvanceTo(1.0);
+            _shown = 0;
             if (report.shrinkage.radiusRatio < eval::kLeastRadiusRatio && !_options.keepsResult) return {};
         }
         _job.Finish();
@@ -180,17 +181,29 @@ public:
     }
 
 private:
-    eval::CascadeOptions MakeCascadeOptions() const {
+    eval::CascadeOptions MakeCascadeOptions() {
         return {.solver = _options.solver,
                 .tolerance = IsByTolerance() ? _options.tolerance : 0.0,
                 .width = _widths.IsConstant() ? _widths.GetConstant() / _unit : -1.0,
-                .isGraph = _options.isGraph};
+                .isGraph = _options.isGraph,
+                .progress = [this](double share) {
+                    CheckInterrupted();
+                    AdvanceTo(share);
+                }};
     }
 
     bool IsByTolerance() const { return _options.sweeps == 0 && _options.iterations == 0; }
 
     size_t GetEffort(int level) const {
-        return size_t{1} << (_options.refinement == SmoothRefinement::Quadrisect ? 2 * level : level);
+        return size_t{1000} << (_options.refinement == SmoothRefinement::Quadrisect ? 2 * level : level);
+    }
+
+    /// Shows a share of the present level as done.
+    void AdvanceTo(double share) {
+        size_t const done = static_cast<size_t>(share * static_cast<double>(GetEffort(_level)));
+        if (done <= _shown) return;
+        _job.Advance(done - _shown);
+        _shown = done;
     }
 
     int CountIterations() const {
@@ -269,6 +282,7 @@ private:
     CascadeLevel _rows;
     eval::Cascade<Scalar> _cascade;
     int _level = 0;
+    size_t _shown = 0;  // of the level's effort
 };
 
 constexpr double kMaxVertices = 10000.0;  // of a grid to measure the critical width on

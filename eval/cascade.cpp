@@ -145,7 +145,7 @@ CascadeStepReport Cascade<Scalar>::Solve(int iterations) {
     if constexpr (std::is_same_v<Scalar, double>) {
         CascadeSolve const solve = _options.solver == CascadeSolver::Exact
                                        ? SolveByCholesky(level, _operator, _x0, _x)
-                                       : SolveByConjugateGradients(level, _operator, _x0, _x, iterations, _options.tolerance);
+                                       : SolveByConjugateGradients(level, _operator, _x0, _x, iterations, _options.tolerance, _options.progress);
         report.sweeps = solve.iterations;
         report.residual = solve.residual;
         report.converged = solve.converged || _options.tolerance == 0.0;  // a count was asked for, and done

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct CascadeOptions {
     double tolerance = 0.0;   ///< of the residual, where conjugate gradients stop
     double width = -1.0;      ///< sigma of all rows; negative: that of each vertex, solved along with the positions
     bool isGraph = false;     ///< filters heights z over the plane: its metric, x and y stay
+    std::function<void(double)> progress{};  ///< of conjugate gradients: called between iterations with the share of a step that is done; may throw
     bool measuresResidual = true;  ///< of Jacobi sweeps, at the cost of about one
 };
 

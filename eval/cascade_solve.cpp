@@ -1,5 +1,6 @@
 #include "eval/cascade_solve.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/SparseCholesky>
@@ -48,8 +49,9 @@ public:
         for (auto* rows : {&_residual, &_direction, &_image}) rows->assign(count, DoubleLanes::Zero());
     }
 
-    CascadeSolve Run(DoubleLanes const& data, int maxIterations, double tolerance) {
+    CascadeSolve Run(DoubleLanes const& data, int maxIterations, double tolerance, std::function<void(double)> const& progress) {
         CascadeSolve result;
+        double first = 0.0;
         _isPreconditioned = tolerance > 0.0;
         DoubleLanes energy = DoubleLanes::Zero();
         DoubleLanes squares = Sum([&](Index row) {
@@ -60,6 +62,12 @@ public:
             result.residual = FindRelativeSize(squares, data);
             result.converged = result.residual <= tolerance;
             if (result.converged || result.iterations >= maxIterations) return result;
+            if (result.iterations == 0) first = result.residual;
+            if (progress) {
+                double const byCount = static_cast<double>(result.iterations) / maxIterations;
+                double const byResidual = tolerance > 0.0 ? std::log(first / result.residual) / std::log(first / tolerance) : 0.0;
+                progress(std::clamp(std::max(byCount, byResidual), 0.0, 1.0));
+            }
             DoubleLanes const before = energy;
             energy = Sum([&](Index row) { return _residual[At(row)].square() * GetInverse(row); });
             DoubleLanes const momentum = Divide(energy, before);
@@ -157,11 +165,11 @@ template double MeasureResidual(CascadeLevel const&, CascadeOperator<float> cons
 template double MeasureResidual(CascadeLevel const&, CascadeOperator<double> const&, CascadeRows<double> const&, CascadeRows<double> const&);
 
 CascadeSolve SolveByConjugateGradients(CascadeLevel const& level, Operator const& op, CascadeRows<double> const& x0,
-                                       CascadeRows<double>& x, int maxIterations, double tolerance) {
+                                       CascadeRows<double>& x, int maxIterations, double tolerance, std::function<void(double)> const& progress) {
     DoubleLanes const data = MeasureData(level, op, x0);
     double const share = level.numSurface < level.numUnknowns ? std::sqrt(0.5) : 1.0;  // so that both together keep it
     auto const run = [&](Index begin, Index end) {
-        return ConjugateGradientRows(level, op, x0, x, begin, end).Run(data, maxIterations, share * tolerance);
+        return ConjugateGradientRows(level, op, x0, x, begin, end).Run(data, maxIterations, share * tolerance, progress);
     };
     CascadeSolve const creases = run(level.numSurface, level.numUnknowns), surface = run(0, level.numSurface);
     return {std::max(creases.iterations, surface.iterations), std::hypot(creases.residual, surface.residual),

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "eval/cascade_operator.h"
 
 namespace limn::eval {
@@ -23,9 +25,10 @@ double MeasureResidual(far_ext::CascadeLevel const& level, CascadeOperator<Scala
 ///                       one, as the a-priori counts of [Diewald02] are meant
 /// \param x              what to start from, and the result
 /// \param maxIterations  of each kind of rows
+/// \param progress       called between iterations with the share done, as far as one can tell; may throw
 CascadeSolve SolveByConjugateGradients(far_ext::CascadeLevel const& level, CascadeOperator<double> const& op,
                                        CascadeRows<double> const& x0, CascadeRows<double>& x, int maxIterations,
-                                       double tolerance);
+                                       double tolerance, std::function<void(double)> const& progress = {});
 
 /// The same by a sparse Cholesky factorisation: the reference.
 ///
