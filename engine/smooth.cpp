@@ -194,8 +194,10 @@ private:
 
     bool IsByTolerance() const { return _options.sweeps == 0 && _options.iterations == 0; }
 
+    /// What a level costs: a number of unknowns, and of iterations, which about doubles with each quartering.
     size_t GetEffort(int level) const {
-        return size_t{1000} << (_options.refinement == SmoothRefinement::Quadrisect ? 2 * level : level);
+        int const doublings = IsByTolerance() && _options.solver != eval::CascadeSolver::Exact ? 3 * level : 2 * level;
+        return size_t{1000} << (_options.refinement == SmoothRefinement::Quadrisect ? doublings : doublings / 2);
     }
 
     /// Shows a share of the present level as done.
