@@ -113,7 +113,7 @@ FitResult FitToLimit(Scene const& scene, FitOptions const& options) {
         result.certificate = Certify(result.mesh, scene.positions, options.tolerance);
         return result;
     }
-    Scene fine = RefineWithAlpha(result.mesh, interpolator.GetOperator(), options.alpha);
+    Scene fine = RefineWithAlpha(result.mesh, eval::LimitOperator::Build(*refiner, 0, {.alpha = options.alpha}), options.alpha);
     result.certificate = Certify(fine, scene.positions, options.tolerance);
     if (!options.keepsTopology) result.mesh = std::move(fine);
     return result;

@@ -89,32 +89,67 @@ double FindSize(std::span<double const> values, int length) {
 }
 
 Interpolator::Interpolator(Far::TopologyRefiner const& refiner, int level, far_ext::LimitOptions const& options)
-    : _A(LimitOperator::Build(refiner, level, options)), _singular(_A) {}
+    : _A(LimitOperator::Build(refiner, level, options).Reorder(_vertices)), _singular(_A) {}
+
+namespace {
+
+/// Channels `first` to `first` + count of rows of `length`: out[i] = values[vertices[i]].
+std::vector<double> Gather(std::span<double const> values, int length, int first, int count, std::vector<Index> const& vertices) {
+    std::vector<double> rows(vertices.size() * static_cast<size_t>(count));
+    ForEachChunk(static_cast<Index>(vertices.size()), [&](Index begin, Index end) {
+        for (Index row = begin; row < end; ++row) {
+            double const* const from = &values[static_cast<size_t>(vertices[row]) * static_cast<size_t>(length) + static_cast<size_t>(first)];
+            std::copy_n(from, count, &rows[static_cast<size_t>(row) * static_cast<size_t>(count)]);
+        }
+    });
+    return rows;
+}
+
+/// The reverse.
+void Scatter(std::span<double const> rows, int length, int first, int count, std::vector<Index> const& vertices, std::span<double> values) {
+    ForEachChunk(static_cast<Index>(vertices.size()), [&](Index begin, Index end) {
+        for (Index row = begin; row < end; ++row) {
+            double* const to = &values[static_cast<size_t>(vertices[row]) * static_cast<size_t>(length) + static_cast<size_t>(first)];
+            std::copy_n(&rows[static_cast<size_t>(row) * static_cast<size_t>(count)], count, to);
+        }
+    });
+}
+
+}  // namespace
+
+std::vector<double> Interpolator::FindLimits(std::span<double const> values, int length) const {
+    auto const rows = Gather(values, length, 0, length, _vertices);
+    std::vector<double> limits(rows.size()), result(rows.size());
+    _A.Apply(rows, length, limits);
+    Scatter(limits, length, 0, length, _vertices, result);
+    return result;
+}
 
 SolveReport Interpolator::Solve(std::span<double const> M, int length, std::span<double> P, InterpolateOptions const& options) const {
     Validate(_A, M, length, P, options);
     SolveReport report;
     report.converged = true;
-    constexpr int kMaxBlock = 4;
-    if (length <= kMaxBlock) {
-        std::copy(M.begin(), M.end(), P.begin());
-        LimitProblem problem{_A, length, M.data(), P.data(), FindSize(M, length), options.tolerance, options.maxIterations, options.onIteration};
-        Join(report, SolveBlock(problem, options));
-        return report;
-    }
-    size_t const numVertices = static_cast<size_t>(_A.GetNumVertices()), stride = static_cast<size_t>(length);
     double const size = FindSize(M, length);
+    constexpr int kMaxBlock = 4;
     for (int first = 0; first < length; first += kMaxBlock) {
-        size_t const start = static_cast<size_t>(first), block = static_cast<size_t>(std::min(kMaxBlock, length - first));
-        std::vector<double> data(numVertices * block), solution;
-        for (size_t i = 0; i < numVertices; ++i) std::copy_n(&M[i * stride + start], block, &data[i * block]);
-        solution = data;
-        LimitProblem problem{_A,   static_cast<int>(block), data.data(),           solution.data(),
-                             size, options.tolerance,       options.maxIterations, options.onIteration};
+        int const count = std::min(kMaxBlock, length - first);
+        std::vector<double> data = Gather(M, length, first, count, _vertices), own;
+        if (count < length) own.resize(data.size());
+        std::span<double> const solution = count < length ? std::span(own) : P;  // P serves as memory until the end
+        std::copy(data.begin(), data.end(), solution.begin());
+        LimitProblem problem{_A, count, data.data(), solution.data(), size, options.tolerance, options.maxIterations, options.onIteration};
         Join(report, SolveBlock(problem, options));
-        for (size_t i = 0; i < numVertices; ++i) std::copy_n(&solution[i * block], block, &P[i * stride + start]);
+        std::copy(solution.begin(), solution.end(), data.begin());
+        Scatter(data, length, first, count, _vertices, P);
     }
+    if (report.worstVertex >= 0) report.worstVertex = _vertices[report.worstVertex];
     return report;
+}
+
+Index Interpolator::FindFirstVertex(SingularComponents::Component const& component) const {
+    Index first = _vertices[component.vertices.front()];
+    for (Index row : component.vertices) first = std::min(first, _vertices[row]);
+    return first;
 }
 
 double Interpolator::ChooseLambda(InterpolateOptions const& options) const {
@@ -171,7 +206,7 @@ SolveReport Interpolator::SolveBlock(LimitProblem& problem, InterpolateOptions c
     double worstDefect = 0.0;
     for (auto const& component : _singular.Get()) {
         double const defect = SingularComponents::FindDefect(component, data, problem.length) / problem.size;
-        report.singularComponents.push_back({component.vertices.front(), static_cast<Index>(component.vertices.size()), defect,
+        report.singularComponents.push_back({FindFirstVertex(component), static_cast<Index>(component.vertices.size()), defect,
                                              defect <= 0.5 * problem.tolerance});
         worstDefect = std::max(worstDefect, defect);
     }

@@ -55,7 +55,14 @@ public:
     /// \throws Error  as LimitOperator::Build
     explicit Interpolator(Far::TopologyRefiner const& refiner, int level = 0, far_ext::LimitOptions const& options = {});
 
+    /// A, its rows in the order of GetVertices.
     LimitOperator const& GetOperator() const { return _A; }
+
+    /// Per row of A the vertex it belongs to.
+    std::vector<Index> const& GetVertices() const { return _vertices; }
+
+    /// Limits of all vertices: A times rows of `length` numbers, one per vertex.
+    std::vector<double> FindLimits(std::span<double const> values, int length) const;
 
     /// \param M       rows of `length` numbers, any length
     /// \param P       receives the solution; must not overlap M
@@ -72,6 +79,9 @@ private:
     SolveReport SolveBlock(LimitProblem& problem, InterpolateOptions const& options) const;
     IterationResult Run(LimitProblem const& problem, InterpolateOptions const& options, SolveMethod& used) const;
 
+    Index FindFirstVertex(SingularComponents::Component const& component) const;
+
+    std::vector<Index> _vertices;  // before what it is needed for
     LimitOperator _A;
     SingularComponents _singular;
 };

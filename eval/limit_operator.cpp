@@ -1,6 +1,8 @@
 #include "eval/limit_operator.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <iterator>
 #include <limits>
 
 #include "far_ext/error.h"
@@ -123,6 +125,56 @@ LimitOperator LimitOperator::Build(Far::TopologyRefiner const& refiner, int leve
     }
     result.FindStages();
     result.Summarise(refiner.GetSchemeType(), options);
+    return result;
+}
+
+std::vector<Index> LimitOperator::OrderForSweeps() const {
+    std::vector<Index> order;
+    order.reserve(_classes.size());
+    std::vector<char> isSeen(_classes.size(), 0);
+    for (Index start = 0; start < GetNumVertices(); ++start) {
+        if (isSeen[start]) continue;
+        isSeen[start] = 1;
+        order.push_back(start);
+        for (size_t at = order.size() - 1; at < order.size(); ++at) {
+            for (Index neighbour : GetNeighbours(order[at])) {
+                if (isSeen[neighbour]) continue;
+                isSeen[neighbour] = 1;
+                order.push_back(neighbour);
+            }
+        }
+    }
+    for (auto begin = order.begin(); begin != order.end();) {
+        auto const end = begin + std::min(std::ptrdiff_t{kRowsPerBlock}, order.end() - begin);
+        std::stable_sort(begin, end, [&](Index a, Index b) { return _classes[a] < _classes[b]; });
+        begin = end;
+    }
+    return order;
+}
+
+LimitOperator LimitOperator::Reorder(std::vector<Index>& vertices) const {
+    vertices = OrderForSweeps();
+    std::vector<Index> rows(vertices.size());
+    for (size_t row = 0; row < vertices.size(); ++row) rows[vertices[row]] = static_cast<Index>(row);
+    LimitOperator result;
+    result._starts.reserve(_starts.size());
+    result._classes.reserve(_classes.size());
+    result._indices.reserve(_indices.size());
+    result._weights = _weights;
+    result._table = _table;
+    std::copy(std::begin(_numRows), std::end(_numRows), std::begin(result._numRows));
+    result._eigenvalueBound = _eigenvalueBound;
+    result._isSymmetric = _isSymmetric;
+    for (Index row = 0; row < GetNumVertices(); ++row) {
+        Index const vertex = vertices[row];
+        if (GetClass(vertex).isExplicit) result._indices.push_back(_indices[_starts[vertex]]);
+        for (Index neighbour : GetNeighbours(vertex)) {
+            result._indices.push_back(rows[neighbour]);
+            result._bandwidth = std::max(result._bandwidth, std::abs(rows[neighbour] - row));
+        }
+        result._classes.push_back(_classes[vertex]);
+        result._starts.push_back(static_cast<int>(result._indices.size()));
+    }
     return result;
 }
 

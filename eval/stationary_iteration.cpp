@@ -1,8 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
+#include <vector>
+
+#include <tbb/parallel_for.h>
 
 #include "eval/step_schedule.h"
+#include "far_ext/large_array.h"
 
 namespace limn::eval {
 
@@ -23,6 +28,11 @@ Real FindLargest(std::vector<Real> const& values) {
     return largest;
 }
 
+/// Coefficients of a step.
+struct Step {
+    float a, b;
+};
+
 /// The inner iteration, in float: a correction E with A E = R, started at 0, in the unit of the data's size.
 template <int Lanes>
 class Correction {
@@ -30,20 +40,32 @@ public:
     explicit Correction(LimitOperator const& A)
         : _A(A), _right(static_cast<size_t>(A.GetNumVertices()) * Row::kStride, 0.0f), _current(_right), _previous(_right) {}
 
-    /// One step in place, with max |R - A E| from before it.
-    float Step(double a, double b) {
-        float const fa = static_cast<float>(a), fb = static_cast<float>(b);
-        auto const maxima = MapChunks(_A.GetNumVertices(), [&](Index begin, Index end) {
-            float largest = 0.0f;
-            _A.ForEachRow<Row>(begin, end, Stage::Rest, _current.data(), [&](Index row, auto const&, Row const& own, Row const& limit) {
-                Row const residual = Row::Load(_right.data(), row) - limit;
-                largest = std::max(largest, residual.SquaredLength());
-                (own + fa * (own - Row::Load(_previous.data(), row)) + fb * residual).Store(_previous.data(), row);
+    /// How many steps are best taken together: several where a pass over all rows goes through more than the cache.
+    int GetStepsPerPass() const {
+        constexpr int kSteps = 4;
+        return GetNumBlocks() >= 2 * kSteps * GetLag() ? kSteps : 1;
+    }
+
+    /// Steps in place, with max |R - A E| from before each of them. Each goes over the rows so far behind the one before that
+    /// what it reads is done, and what it writes is read no more. The same bits as one step after the other, and A is read
+    /// once for all.
+    std::vector<float> Take(std::span<Step const> steps) {
+        Index const numSteps = static_cast<Index>(steps.size()), numBlocks = GetNumBlocks(), lag = GetLag();
+        if (numSteps == 1) return {TakeOne(steps[0])};
+        std::vector<std::vector<float>> maxima(steps.size(), std::vector<float>(static_cast<size_t>(numBlocks), 0.0f));
+        float* const buffers[] = {_current.data(), _previous.data()};
+        for (Index front = 0; front < numBlocks + lag * (numSteps - 1); front += kBlocksAbreast) {
+            tbb::parallel_for(Index{0}, numSteps * kBlocksAbreast, [&](Index task) {
+                Index const step = task / kBlocksAbreast, block = front - lag * step + task % kBlocksAbreast;
+                if (block < 0 || block >= numBlocks) return;
+                Index const begin = block * kRowsPerBlock, end = std::min(begin + kRowsPerBlock, _A.GetNumVertices());
+                maxima[step][block] = TakeRows(steps[step], begin, end, buffers[step % 2], buffers[(step + 1) % 2]);
             });
-            return largest;
-        });
-        std::swap(_current, _previous);
-        return std::sqrt(FindLargest(maxima));
+        }
+        if (numSteps % 2 == 1) std::swap(_current, _previous);
+        std::vector<float> residuals;
+        for (auto const& ofStep : maxima) residuals.push_back(std::sqrt(FindLargest(ofStep)));
+        return residuals;
     }
 
     /// Starts again at E = 0 for another right side, with the memory kept: what was E_k becomes 0, and E_{k-1} is
@@ -67,8 +89,33 @@ public:
 private:
     using Row = FloatRow<Lanes>;
 
+    static constexpr Index kRowsPerBlock = LimitOperator::kRowsPerBlock, kBlocksAbreast = 4;
+
+    Index GetNumBlocks() const { return (_A.GetNumVertices() + kRowsPerBlock - 1) / kRowsPerBlock; }
+
+    /// Blocks from one step to the next: those that are worked on at once, and those that neighbours reach into.
+    Index GetLag() const { return kBlocksAbreast + (_A.GetBandwidth() + kRowsPerBlock - 1) / kRowsPerBlock; }
+
+    float TakeOne(Step step) {
+        auto const maxima =
+            MapChunks(_A.GetNumVertices(), [&](Index begin, Index end) { return TakeRows(step, begin, end, _current.data(), _previous.data()); });
+        std::swap(_current, _previous);
+        return std::sqrt(FindLargest(maxima));
+    }
+
+    /// Rows of a step from E_k to E_{k+1}, which takes the place of E_{k-1}. Returns max |R - A E_k|^2.
+    float TakeRows(Step step, Index begin, Index end, float const* current, float* previous) const {
+        float largest = 0.0f;
+        _A.ForEachRow<Row>(begin, end, Stage::Rest, current, [&](Index row, auto const&, Row const& own, Row const& limit) {
+            Row const residual = Row::Load(_right.data(), row) - limit;
+            largest = std::max(largest, residual.SquaredLength());
+            (own + step.a * (own - Row::Load(previous, row)) + step.b * residual).Store(previous, row);
+        });
+        return largest;
+    }
+
     LimitOperator const& _A;
-    std::vector<float> _right, _current, _previous;  // of vertices that are not of the rest: 0
+    far_ext::LargeArray<float> _right, _current, _previous;  // of vertices that are not of the rest: 0
 };
 
 /// The outer iteration, in double: R = M - A P, P += E until R is small enough.
@@ -131,14 +178,32 @@ private:
         _schedule.Advance(a, b);
         _correction.Restart(a, b);
         _watch.Add(start);
+        double last = start, rate = _schedule.GetExpectedRate();
         while (!IsUsedUp()) {
-            _schedule.Advance(a, b);
-            double const residual = static_cast<double>(_correction.Step(a, b));
-            Record(residual);
-            if (residual <= goal || !(residual < 1e4 * start)) return;
-            _watch.Add(residual);
+            std::vector<Step> steps;
+            for (int count = CountSteps(last, goal, rate); count > 0; --count) {
+                _schedule.Advance(a, b);
+                steps.push_back({static_cast<float>(a), static_cast<float>(b)});
+            }
+            bool isDone = false;
+            for (float value : _correction.Take(steps)) {
+                double const residual = static_cast<double>(value);
+                Record(residual);
+                isDone |= residual <= goal || !(residual < 1e4 * start);
+                _watch.Add(residual);
+                rate = residual / last;
+                last = residual;
+            }
+            if (isDone) return;
             if (_method == StationaryMethod::Chebyshev && _watch.IsReady() && !LowerBound()) return;
         }
+    }
+
+    /// Steps to take together: as many as are needed anyway, if a step goes on to shrink the residual by `rate`.
+    int CountSteps(double last, double goal, double rate) const {
+        int const most = std::min(_correction.GetStepsPerPass(), _problem.maxApplications - _result.applications);
+        double const needed = rate > 0.0 && rate < 1.0 ? std::log(goal / last) / std::log(rate) : 1.0;
+        return needed > 1.0 ? std::min(most, static_cast<int>(std::min(needed, 100.0))) : 1;
     }
 
     /// Lowers the bound where modes below it hold convergence up. Returns false where that goes too far.

@@ -50,13 +50,6 @@ std::vector<double> MakeOctave(std::span<double const> limitPoints, int octave, 
     return values;
 }
 
-/// Limits of all vertices of a level, `length` values each.
-std::vector<double> FindLimits(eval::Interpolator const& level, std::vector<double> const& values, int length) {
-    std::vector<double> limits(values.size());
-    level.GetOperator().Apply(values, length, limits);
-    return limits;
-}
-
 }  // namespace
 
 SurfaceNoise::SurfaceNoise(Scene const& scene, NoiseOptions const& options) {
@@ -84,13 +77,13 @@ SurfaceNoise::SurfaceNoise(Scene const& scene, NoiseOptions const& options) {
         }
         eval::Interpolator const interpolator(*refiner, level);
         std::vector<double> const octave =
-            MakeOctave(FindLimits(interpolator, positions, 3), level, frequency, amplitude, options.seed);
+            MakeOctave(interpolator.FindLimits(positions, 3), level, frequency, amplitude, options.seed);
         std::vector<double> control(octave.size());
         interpolator.Solve(octave, 1, control, {.tolerance = 1e-9, .onIteration = [](int, double) { CheckInterrupted(); }});
         _values.resize(control.size(), 0.0);
         for (size_t i = 0; i < control.size(); ++i) _values[i] += control[i];
         if (level < levels) continue;
-        auto const limits = FindLimits(interpolator, _values, 1);
+        auto const limits = interpolator.FindLimits(_values, 1);
         auto const [low, high] = std::minmax_element(limits.begin(), limits.end());
         _low = *low;
         _high = *high;

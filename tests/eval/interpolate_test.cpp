@@ -272,10 +272,9 @@ TEST(Interpolator, SolvesRefinedLevels) {
     for (int level = 0; level <= 2; ++level) {
         Interpolator const interpolator(*refiner, level);
         Rows const M = Rows::Random(refiner->GetLevel(level).GetNumVertices(), 1);
-        std::vector<double> P(static_cast<size_t>(M.size())), limit(P);
+        std::vector<double> P(static_cast<size_t>(M.size()));
         EXPECT_TRUE(interpolator.Solve({M.data(), P.size()}, 1, P, {.tolerance = 1e-10}).converged);
-        interpolator.GetOperator().Apply(P, 1, limit);
-        EXPECT_LT((ToRows(limit, 1) - M).cwiseAbs().maxCoeff(), 3e-10);
+        EXPECT_LT((ToRows(interpolator.FindLimits(P, 1), 1) - M).cwiseAbs().maxCoeff(), 3e-10);
     }
 }
 
@@ -289,6 +288,41 @@ TEST(Interpolator, GivesTheSameBitsForAnyNumberOfThreads) {
             if (first.empty()) first = P;
             EXPECT_EQ(P, first) << GetName(method);
         }
+    }
+}
+
+// On large meshes several steps go over the rows at once, each behind the one before. Against plain steps in double, one
+// by one; neighbours lie as far apart as on a torus of 420 x 420.
+TEST(Interpolator, StepsTakenTogetherAreThoseOneByOne) {
+    engine::Scene const scene = Noisy(test::MakeTorus(420, 420));
+    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    auto const A = eval::LimitOperator::Build(*refiner);
+    auto const& M = scene.positions;
+    std::vector<double> P = M, limit(M.size());
+    std::vector<double> residuals;
+    for (int step = 0; step < 10; ++step) {  // the first application only measures
+        A.Apply(P, 3, limit);
+        double worst = 0.0;
+        for (size_t i = 0; i < M.size(); i += 3) worst = std::max(worst, std::hypot(M[i] - limit[i], M[i + 1] - limit[i + 1], M[i + 2] - limit[i + 2]));
+        residuals.push_back(worst / eval::FindSize(M, 3));
+        for (size_t i = 0; i < M.size(); ++i) P[i] += M[i] - limit[i];
+    }
+    std::vector<double> first;
+    for (size_t threads : {1, 2, 5}) {
+        tbb::global_control const limitThreads(tbb::global_control::max_allowed_parallelism, threads);
+        std::vector<double> found(M.size());
+        auto const report = Interpolator(*refiner).Solve(M, 3, found, {.method = SolveMethod::Progressive, .tolerance = 1e-16, .maxIterations = 10});
+        ASSERT_EQ(report.history.size(), residuals.size());
+        for (size_t i = 0; i < residuals.size(); ++i) EXPECT_NEAR(report.history[i], residuals[i], 1e-4 * residuals[i]) << i;
+        double worst = 0.0;
+        for (size_t i = 0; i < M.size(); ++i) worst = std::max(worst, std::abs(found[i] - P[i]));
+        EXPECT_LT(worst, 1e-6);
+        if (first.empty()) first = found;
+        EXPECT_EQ(found, first) << threads;
+        // Chebyshev the same way: fewer steps, as on small meshes.
+        auto const fast = Interpolator(*refiner).Solve(M, 3, found);
+        EXPECT_TRUE(fast.converged);
+        EXPECT_LE(fast.iterations, 20);
     }
 }
 
