@@ -5,6 +5,7 @@
 
 #include "eval/decompose.h"
 #include "far_ext/error.h"
+#include "far_ext/large_array.h"
 
 namespace limn::eval {
 
@@ -94,8 +95,8 @@ Interpolator::Interpolator(Far::TopologyRefiner const& refiner, int level, far_e
 namespace {
 
 /// Channels `first` to `first` + count of rows of `length`: out[i] = values[vertices[i]].
-std::vector<double> Gather(std::span<double const> values, int length, int first, int count, std::vector<Index> const& vertices) {
-    std::vector<double> rows(vertices.size() * static_cast<size_t>(count));
+far_ext::LargeArray<double> Gather(std::span<double const> values, int length, int first, int count, std::vector<Index> const& vertices) {
+    far_ext::LargeArray<double> rows(vertices.size() * static_cast<size_t>(count));
     ForEachChunk(static_cast<Index>(vertices.size()), [&](Index begin, Index end) {
         for (Index row = begin; row < end; ++row) {
             double const* const from = &values[static_cast<size_t>(vertices[row]) * static_cast<size_t>(length) + static_cast<size_t>(first)];
@@ -133,8 +134,8 @@ SolveReport Interpolator::Solve(std::span<double const> M, int length, std::span
     constexpr int kMaxBlock = 4;
     for (int first = 0; first < length; first += kMaxBlock) {
         int const count = std::min(kMaxBlock, length - first);
-        std::vector<double> data = Gather(M, length, first, count, _vertices), own;
-        if (count < length) own.resize(data.size());
+        auto data = Gather(M, length, first, count, _vertices);
+        std::vector<double> own(count < length ? data.size() : 0);
         std::span<double> const solution = count < length ? std::span(own) : P;  // P serves as memory until the end
         std::copy(data.begin(), data.end(), solution.begin());
         LimitProblem problem{_A, count, data.data(), solution.data(), size, options.tolerance, options.maxIterations, options.onIteration};
