@@ -4,15 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "engine/mesh_info.h"
+#include "engine/smooth_checks.h"
 #include "eval/critical_width.h"
 #include "eval/enclosed_volume.h"
-#include "far_ext/error.h"
-#include "far_ext/face_components.h"
 
 namespace limn::engine {
 
@@ -20,37 +16,8 @@ namespace {
 
 using far_ext::CascadeLevel;
 using far_ext::CascadeMesh;
-using Vector = Eigen::Vector3d;
 
 constexpr int kMaxIterations = 20000;  // of conjugate gradients on a level
-
-Vector At(Scene const& scene, Index vertex) { return Vector(&scene.positions[3 * static_cast<size_t>(vertex)]); }
-
-/// Components of the control mesh.
-struct Components {
-    int count = 0;
-    std::vector<int> ofVertex;  // -1 without faces
-    std::vector<char> isClosed;
-    std::vector<Index> firstVertex;
-
-    explicit Components(Far::TopologyLevel const& level) {
-        auto const faces = far_ext::FaceComponents::Find(level);
-        count = faces.count;
-        ofVertex.assign(static_cast<size_t>(level.GetNumVertices()), -1);
-        isClosed.assign(static_cast<size_t>(count), 1);
-        firstVertex.assign(static_cast<size_t>(count), -1);
-        for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
-            auto const around = level.GetVertexFaces(vertex);
-            if (around.size() == 0) continue;
-            int const component = ofVertex[vertex] = faces.ofFace[around[0]];
-            if (firstVertex[component] < 0) firstVertex[component] = vertex;
-        }
-        for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
-            auto const around = level.GetEdgeFaces(edge);
-            if (around.size() == 1) isClosed[faces.ofFace[around[0]]] = 0;
-        }
-    }
-};
 
 std::vector<double> Times(double factor, std::vector<double> values) {
     for (double& value : values) value *= factor;
@@ -84,59 +51,6 @@ std::vector<double> Interpolate(CascadeMesh const& mesh, std::vector<double> con
     return fine;
 }
 
-void RefuseDefects(Scene const& scene, Far::TopologyLevel const& level) {
-    for (Defect const& defect : FindDefects(scene, level)) {
-        for (char const* kind : {"non_manifold_edge", "non_manifold_vertex", "winding", "not_orientable", "repeated_corner"}) {
-            if (defect.kind == kind) throw Error(ErrorCode::BadMesh, fmt::format("{}: {}; a geometric filter needs a manifold, oriented one way", scene.path, defect.message));
-        }
-    }
-}
-
-/// Faces must lie side by side in the plane: all turn the same way, at each corner.
-void RequireGraph(Scene const& scene, Far::TopologyLevel const& level) {
-    double direction = 0.0;
-    for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        auto const vertices = level.GetFaceVertices(face);
-        int const n = vertices.size();
-        for (int k = 0; k < n; ++k) {
-            Vector const a = At(scene, vertices[k]), b = At(scene, vertices[(k + 1) % n]), c = At(scene, vertices[(k + 2) % n]);
-            double const turn = (b - a).x() * (c - b).y() - (b - a).y() * (c - b).x();
-            if (direction == 0.0) direction = turn;
-            if (turn != 0.0 && (turn > 0.0) == (direction > 0.0)) continue;
-            throw Error(ErrorCode::BadMesh, fmt::format("{}: {} is folded, hollow or without area in the plane of x and y; --graph needs heights z over a "
-                                                        "plane of convex faces",
-                                                        scene.path, scene.NameFace(face)));
-        }
-    }
-}
-
-/// Warns of corners so sharp that triangles degenerate there with the levels: surface.md 3.3.
-///
-/// \param widths  on the first level, whose first vertices are the control mesh'; empty: everywhere some
-void WarnOfSharpCorners(Scene const& scene, Far::TopologyLevel const& level, CascadeLevel const& first, std::vector<double> const& widths, Job& job) {
-    std::vector<double> angles(static_cast<size_t>(level.GetNumVertices()), 0.0);
-    for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        auto const vertices = level.GetFaceVertices(face);
-        int const n = vertices.size();
-        for (int k = 0; k < n; ++k) {
-            Vector const a = At(scene, vertices[(k + n - 1) % n]) - At(scene, vertices[k]), b = At(scene, vertices[(k + 1) % n]) - At(scene, vertices[k]);
-            angles[vertices[k]] += std::atan2(a.cross(b).norm(), a.dot(b));
-        }
-    }
-    constexpr double kHalfTurn = std::numbers::pi * (1.0 - 1e-9);
-    int count = 0;
-    Index sharpest = -1;
-    for (Index row = 0; row < first.numClosed; ++row) {
-        Index const vertex = first.vertices[row];
-        if (vertex >= level.GetNumVertices() || angles[vertex] >= kHalfTurn || (!widths.empty() && widths[vertex] == 0.0)) continue;
-        ++count;
-        if (sharpest < 0 || angles[vertex] < angles[sharpest]) sharpest = vertex;
-    }
-    if (count == 0) return;
-    job.Warn(fmt::format("{}: at vertex {}{} the faces' angles add up to {:.1f} degrees; below 180 the filter's triangles degenerate with the levels", scene.path,
-                         sharpest, count > 1 ? fmt::format(" and {} more", count - 1) : "", angles[sharpest] * 180.0 / std::numbers::pi));
-}
-
 /// Widths at the control mesh' vertices: 0 where they are given anew on every level, none where they are constant.
 std::vector<double> GetStartWidths(Scene const& scene, FilterWidths const& widths) {
     if (widths.IsConstant()) return {};
@@ -147,11 +61,13 @@ std::vector<double> GetStartWidths(Scene const& scene, FilterWidths const& width
 template <class Scalar>
 class SmoothRun {
 public:
-    SmoothRun(Scene const& scene, Far::TopologyLevel const& base, FilterWidths const& widths, SmoothOptions const& options, Job& job)
+    /// \param isAgain  the input's warnings have been given
+    SmoothRun(Scene const& scene, Far::TopologyLevel const& base, FilterWidths const& widths, SmoothOptions const& options, bool isAgain, Job& job)
         : _scene(scene),
           _base(base),
           _widths(widths),
           _options(options),
+          _isAgain(isAgain),
           _job(job),
           _components(base),
           _ofVertex(_components.ofVertex),
@@ -222,9 +138,7 @@ private:
         _ofVertex = Inherit(mesh, _ofVertex);
         _start = Interpolate(mesh, _start);
         auto const given = _widths.SampleLevel(_levels, _start);
-        if (_level == 1 && !_options.isGraph) {
-            WarnOfSharpCorners(_scene, _base, _rows, given.empty() ? _widths.GetAtVertices() : given, _job);
-        }
+        if (_level == 1 && !_options.isGraph && !_isAgain) WarnOfSharpCorners(_scene, _base, _rows, given.empty() ? _widths.GetAtVertices() : given, _job);
         CheckInterrupted();
         bool const wasFrozen = !report.levels.empty() && report.levels.back().isMetricFrozen;
         report.levels.push_back(_cascade.Step(_rows, CountIterations(), Times(1.0 / _unit, given)));
@@ -275,8 +189,9 @@ private:
     Far::TopologyLevel const& _base;
     FilterWidths const& _widths;
     SmoothOptions const& _options;
+    bool _isAgain;
     Job& _job;
-    Components _components;
+    SmoothComponents _components;
     std::vector<int> _ofVertex;
     std::vector<double> _start;  // the start surface on the present level
     SmoothLevels _levels;
@@ -295,7 +210,7 @@ double MeasureCriticalFactor(Scene const& scene, Far::TopologyLevel const& base,
     int maxLevels = isBisection ? 6 : 3;
     while (maxLevels > 1 && base.GetNumVertices() * std::pow(isBisection ? 2.0 : 4.0, maxLevels) > kMaxVertices) --maxLevels;
     SmoothLevels levels(scene, maxLevels, options.refinement, options.keepsCreases);
-    Components const components(base);
+    SmoothComponents const components(base);
     std::vector<int> ofVertex = components.ofVertex;
     std::vector<double> start = scene.positions;
     std::vector<CascadeLevel> rows;
@@ -314,13 +229,14 @@ double MeasureCriticalFactor(Scene const& scene, Far::TopologyLevel const& base,
     return eval::FindCriticalFactor(rows, Times(1.0 / unit, scene.positions), scaled, ofVertex, components.isClosed, CheckInterrupted);
 }
 
-Scene RunOnce(Scene const& scene, Far::TopologyRefiner const& refiner, FilterWidths const& widths, SmoothOptions const& options, Job& job, SmoothReport& report) {
-    auto const base = refiner.GetLevel(0);
+Scene RunOnce(Scene const& scene, Far::TopologyLevel const& base, FilterWidths const& widths, SmoothOptions const& options, bool isAgain, Job& job,
+              SmoothReport& report) {
     report = {};
     report.meanEdge = MeasureMeanEdge(scene, base);
     report.largestWidth = widths.GetLargest();
     bool const isSingle = options.isSingle && options.solver == eval::CascadeSolver::Jacobi;
-    return isSingle ? SmoothRun<float>(scene, base, widths, options, job).Run(report) : SmoothRun<double>(scene, base, widths, options, job).Run(report);
+    return isSingle ? SmoothRun<float>(scene, base, widths, options, isAgain, job).Run(report)
+                    : SmoothRun<double>(scene, base, widths, options, isAgain, job).Run(report);
 }
 
 }  // namespace
@@ -333,7 +249,7 @@ Scene Smooth(Scene const& scene, Far::TopologyRefiner const& refiner, FilterWidt
     auto const base = refiner.GetLevel(0);
     RefuseDefects(scene, base);
     if (options.isGraph) RequireGraph(scene, base);
-    Scene fine = RunOnce(scene, refiner, widths, options, job, report);
+    Scene fine = RunOnce(scene, base, widths, options, false, job, report);
     // A sphere is at 0.72 of its radius where the width is 0.9 of the critical one. On a large mesh it costs too much to be sure.
     constexpr double kSuspiciousRatio = 0.75;
     double const suspicious = 4.0 * base.GetNumVertices() <= kMaxVertices ? kSuspiciousRatio : eval::kLeastRadiusRatio;
@@ -344,7 +260,7 @@ Scene Smooth(Scene const& scene, Far::TopologyRefiner const& refiner, FilterWidt
         if (report.HasCollapsed() && options.limitsWidth && factor > 0.0) {
             Index const vertex = report.shrinkage.firstVertex;
             double const limit = 0.95 * factor;  // a fixed point near the critical width takes many levels
-            fine = RunOnce(scene, refiner, widths.Scaled(limit), options, job, report);
+            fine = RunOnce(scene, base, widths.Scaled(limit), options, true, job, report);
             report.limitedBy = limit;
             report.criticalFactor = factor / limit;
             job.Warn(fmt::format("{}: the width was reduced to {:.4g} of what was asked for; the component of vertex {} carries {:.4g}", scene.path, limit, vertex,
