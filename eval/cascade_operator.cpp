@@ -4,149 +4,34 @@
 #include <cmath>
 #include <limits>
 
+#include "eval/cascade_kernel.h"
+
 namespace limn::eval {
 
 namespace {
 
 using far_ext::CascadeLevel;
 
-/// Of the triangles seen so far: the largest cotangent, and twice their areas.
-template <class Scalar>
-struct Shapes {
-    Scalar maxCotangent = -std::numeric_limits<Scalar>::max();
-    Scalar minArea = std::numeric_limits<Scalar>::max();
-    double sumArea = 0.0;
-    double count = 0.0;
-};
-
-template <class Scalar>
-constexpr Scalar kLeastSine = std::is_same_v<Scalar, float> ? Scalar(1e-3) : Scalar(1e-7);
-
-/// An edge of a ring, seen from the middle.
-template <class Scalar>
-struct Spoke {
-    CascadeRow<Scalar> vector;
-    Scalar square, width;
-};
-
-template <class Scalar>
-inline Scalar Dot(CascadeRow<Scalar> const& a, CascadeRow<Scalar> const& b) {
-    CascadeRow<Scalar> const p = a * b;
-    return (p[0] + p[1]) + p[2];
+CascadeRings GetRings(CascadeLevel const& level) {
+    return {level.offsets.data(), level.neighbours.data(), level.faceSize, level.numClosed, level.numSurface};
 }
 
-/// Builds the operator's rows one after another. IsLocal: widths come with the rows.
-template <class Scalar, bool IsLocal>
-class RowBuilder {
-public:
-    RowBuilder(CascadeLevel const& level, CascadeRows<Scalar> const& metric, Scalar width, CascadeOperator<Scalar>& op)
-        : _level(level), _metric(metric), _a(Scalar(0.5) * width * width), _op(op) {}
-
-    void BuildSurface(Index row) {
-        int const begin = _level.offsets[row], end = _level.offsets[row + 1];
-        bool const isClosed = row < _level.numClosed;
-        _own = _metric[row];
-        _edges = &_op.edges[begin];
-        _area = Scalar(0);
-        std::fill(_edges, _edges + (end - begin), Scalar(0));
-        int const step = _level.faceSize - 2, numFaces = (end - begin - (isClosed ? 0 : 1)) / step;
-        Spoke<Scalar> last = GetSpoke(_level.neighbours[begin]);
-        for (int k = 0; k < numFaces; ++k) {
-            int const here = k * step, next = isClosed && k + 1 == numFaces ? 0 : here + step;
-            Spoke<Scalar> const spoke = GetSpoke(_level.neighbours[begin + next]);
-            if (step == 1) {
-                AddTriangle(last, spoke, here, next, Scalar(0.5));
-            } else {
-                Spoke<Scalar> const diagonal = GetSpoke(_level.neighbours[begin + here + 1]);
-                AddTriangle(last, diagonal, here, here + 1, Scalar(0.25));
-                AddTriangle(diagonal, spoke, here + 1, next, Scalar(0.25));
-                AddTriangle(last, spoke, here, next, Scalar(0.25));
-            }
-            last = spoke;
-        }
-        Finish(row, begin, end, _area / Scalar(3));
-    }
-
-    void BuildCrease(Index row) {
-        int const begin = _level.offsets[row], end = _level.offsets[row + 1];
-        _own = _metric[row];
-        Scalar mass(0);
-        for (int k = begin; k < end; ++k) {
-            Spoke<Scalar> const spoke = GetSpoke(_level.neighbours[k]);
-            Scalar const length = std::sqrt(spoke.square), h = spoke.width, own = _own[3];
-            Scalar const a = IsLocal ? (h * h + h * own + own * own) / Scalar(6) : _a;
-            _op.edges[k] = length > Scalar(0) ? a / length : Scalar(0);
-            mass += Scalar(0.5) * length;
-        }
-        Finish(row, begin, end, mass);
-    }
-
-    Shapes<Scalar> const& GetShapes() const { return _shapes; }
-
-private:
-    Spoke<Scalar> GetSpoke(Index row) const {
-        CascadeRow<Scalar> const& other = _metric[row];
-        CascadeRow<Scalar> const vector = other - _own;
-        return {vector, Dot<Scalar>(vector, vector), IsLocal ? other[3] : Scalar(0)};
-    }
-
-    /// The triangle of the middle and spokes i and j; `share` is half of its weight.
-    void AddTriangle(Spoke<Scalar> const& a, Spoke<Scalar> const& b, int i, int j, Scalar share) {
-        Scalar const ab = Dot<Scalar>(a.vector, b.vector);
-        Scalar const cross = std::sqrt(std::max(a.square * b.square - ab * ab, Scalar(0)));
-        Scalar const doubleArea = std::max(cross, kLeastSine<Scalar> * (a.square + b.square));
-        Scalar const inverse = doubleArea > Scalar(0) ? Scalar(1) / doubleArea : Scalar(0);
-        Scalar const cotA = (a.square - ab) * inverse, cotB = (b.square - ab) * inverse;
-        Scalar diffusion = _a;
-        if constexpr (IsLocal) {  // the mean of sigma^2 / 2 of a linear sigma
-            Scalar const h = _own[3];
-            diffusion = (h * h + a.width * a.width + b.width * b.width + h * a.width + a.width * b.width + b.width * h) / Scalar(12);
-        }
-        _edges[i] += share * diffusion * cotB;
-        _edges[j] += share * diffusion * cotA;
-        _area += share * doubleArea;
-        _shapes.maxCotangent = std::max(_shapes.maxCotangent, std::max(ab * inverse, std::max(cotA, cotB)));
-        _shapes.minArea = std::min(_shapes.minArea, cross);
-        _rowArea += cross;
-        ++_rowCount;
-    }
-
-    void Finish(Index row, int begin, int end, Scalar mass) {
-        Scalar sum(0);
-        bool isMoved = false;
-        for (int k = begin; k < end; ++k) {
-            sum += _op.edges[k];
-            isMoved |= _op.edges[k] != Scalar(0);
-        }
-        _op.masses[row] = mass;
-        _op.diagonals[row] = isMoved && mass > Scalar(0) ? mass + sum : Scalar(0);
-        _shapes.sumArea += static_cast<double>(_rowArea);
-        _shapes.count += _rowCount;
-        _rowArea = Scalar(0);
-        _rowCount = 0;
-    }
-
-    CascadeLevel const& _level;
-    CascadeRows<Scalar> const& _metric;
-    Scalar _a;
-    CascadeOperator<Scalar>& _op;
-    CascadeRow<Scalar> _own;
-    Scalar* _edges = nullptr;
-    Scalar _area = Scalar(0), _rowArea = Scalar(0);
-    int _rowCount = 0;
-    Shapes<Scalar> _shapes;
+/// What is known of the triangles at a block of surface rows.
+struct BlockShapes {
+    double maxCotangent, minArea;
+    double sumMasses = 0.0, numTriangles = 0.0;
 };
 
-template <bool IsLocal, class Scalar>
-std::vector<Shapes<Scalar>> BuildRows(CascadeLevel const& level, CascadeRows<Scalar> const& metric, Scalar width,
-                                      CascadeOperator<Scalar>& op) {
-    std::vector<Shapes<Scalar>> shapes(static_cast<size_t>(level.numUnknowns / kRowsPerBlock) + 1);
-    ForEachBlock(level.numUnknowns, [&](Index begin, Index end, size_t block) {
-        RowBuilder<Scalar, IsLocal> builder(level, metric, width, op);
-        for (Index row = begin; row < std::min(end, level.numSurface); ++row) builder.BuildSurface(row);
-        for (Index row = std::max(begin, level.numSurface); row < end; ++row) builder.BuildCrease(row);
-        shapes[block] = builder.GetShapes();
-    });
+template <class Scalar>
+BlockShapes BuildBlock(CascadeLevel const& level, CascadeBuildJob<Scalar> const& job, Index begin, Index end) {
+    auto const [maxCotangent, minArea] = BuildCascadeRows(job, begin, end);
+    BlockShapes shapes{static_cast<double>(maxCotangent), static_cast<double>(minArea)};
+    end = std::min(end, level.numSurface);
+    for (Index row = begin; row < end; ++row) shapes.sumMasses += static_cast<double>(job.masses[row]);
+    if (begin < end) {
+        int const numEntries = level.offsets[end] - level.offsets[begin], numOpen = end - std::max(begin, std::min(end, level.numClosed));
+        shapes.numTriangles = level.faceSize == 3 ? numEntries - numOpen : 1.5 * (numEntries - numOpen);  // 3 in the corner of a quad
+    }
     return shapes;
 }
 
@@ -155,16 +40,29 @@ MetricQuality Build(CascadeLevel const& level, CascadeRows<Scalar> const& metric
     op.edges.resize(level.neighbours.size());
     op.masses.resize(static_cast<size_t>(level.numUnknowns));
     op.diagonals.resize(static_cast<size_t>(level.numUnknowns));
-    auto const shapes = width < Scalar(0) ? BuildRows<true>(level, metric, width, op) : BuildRows<false>(level, metric, width, op);
-    Shapes<Scalar> all;
-    for (auto const& part : shapes) {
-        all.maxCotangent = std::max(all.maxCotangent, part.maxCotangent);
-        all.minArea = std::min(all.minArea, part.minArea);
-        all.sumArea += part.sumArea;
-        all.count += part.count;
+    CascadeBuildJob<Scalar> const job{GetRings(level),           metric.data()->data(), width < Scalar(0),    Scalar(0.5) * width * width,
+                                      op.edges.data(), op.masses.data(),       op.diagonals.data()};
+    std::vector<BlockShapes> blocks(static_cast<size_t>(level.numUnknowns / kRowsPerBlock) + 1);
+    ForEachBlock(level.numUnknowns, [&](Index begin, Index end, size_t block) { blocks[block] = BuildBlock(level, job, begin, end); });
+    BlockShapes all{-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
+    for (BlockShapes const& block : blocks) {
+        all.maxCotangent = std::max(all.maxCotangent, block.maxCotangent);
+        all.minArea = std::min(all.minArea, block.minArea);
+        all.sumMasses += block.sumMasses;
+        all.numTriangles += block.numTriangles;
     }
-    if (!(all.sumArea > 0.0)) return {};
-    return {std::atan2(1.0, static_cast<double>(all.maxCotangent)), static_cast<double>(all.minArea) * all.count / all.sumArea};
+    if (!(all.sumMasses > 0.0)) return {};
+    // A mass is a third of a row's triangles, of the four of a quad each with half of its weight.
+    double const meanArea = (level.faceSize == 3 ? 6.0 : 12.0) * all.sumMasses / all.numTriangles;
+    return {std::atan2(1.0, all.maxCotangent), all.minArea / meanArea};
+}
+
+template <class Scalar>
+void Sweep(CascadeLevel const& level, CascadeOperator<Scalar> const& op, CascadeRows<Scalar> const& x,
+           CascadeRows<Scalar> const& x0, CascadeRows<Scalar>& to) {
+    CascadeSweepJob<Scalar> const job{GetRings(level),        op.edges.data(),    op.masses.data(), op.diagonals.data(),
+                                      Scalar(kJacobiDamping), x.data()->data(), x0.data()->data(),  to.data()->data()};
+    ForEachBlock(level.numUnknowns, [&](Index begin, Index end, size_t) { SweepCascadeRows(job, begin, end); });
 }
 
 }  // namespace
@@ -175,6 +73,16 @@ MetricQuality BuildOperator(CascadeLevel const& level, CascadeRows<float> const&
 
 MetricQuality BuildOperator(CascadeLevel const& level, CascadeRows<double> const& metric, double width, CascadeOperator<double>& op) {
     return Build(level, metric, width, op);
+}
+
+void SweepJacobi(CascadeLevel const& level, CascadeOperator<float> const& op, CascadeRows<float> const& x,
+                 CascadeRows<float> const& x0, CascadeRows<float>& to) {
+    Sweep(level, op, x, x0, to);
+}
+
+void SweepJacobi(CascadeLevel const& level, CascadeOperator<double> const& op, CascadeRows<double> const& x,
+                 CascadeRows<double> const& x0, CascadeRows<double>& to) {
+    Sweep(level, op, x, x0, to);
 }
 
 }  // namespace limn::eval
