@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "far_ext/error.h"
+#include "far_ext/large_array.h"
 
 namespace limn::far_ext {
 
@@ -23,8 +24,8 @@ enum class RowKind : char { Closed, Open, Crease, Fixed };
 
 /// Rings of all vertices in the public order.
 struct Rings {
-    std::vector<int> offsets{0};
-    std::vector<Index> neighbours;
+    LargeArray<int> offsets{0};
+    LargeArray<Index> neighbours;
     std::vector<RowKind> kinds;
 };
 
@@ -57,15 +58,20 @@ bool OrderCorners(Index vertex, std::span<Corner> corners) {
 
 Rings FindRings(CascadeMesh const& mesh, BoundaryRule rule) {
     size_t const numVertices = static_cast<size_t>(mesh.numVertices), n = static_cast<size_t>(mesh.faceSize);
-    std::vector<int> begins(numVertices + 1, 0);
+    LargeArray<int> begins(numVertices + 1, 0);
     for (Index vertex : mesh.faces) ++begins[static_cast<size_t>(vertex) + 1];
     for (size_t i = 0; i < numVertices; ++i) begins[i + 1] += begins[i];
-    std::vector<Corner> corners(mesh.faces.size());
-    std::vector<int> fill(begins.begin(), begins.end() - 1);
+    LargeArray<Corner> corners(mesh.faces.size());
+    LargeArray<int> fill(begins.begin(), begins.end() - 1);
     for (size_t face = 0; face < mesh.faces.size(); face += n) {
         Index const* const f = &mesh.faces[face];
+        Index previous = f[n - 1], own = f[0], next = f[1];
         for (size_t k = 0; k < n; ++k) {
-            corners[static_cast<size_t>(fill[f[k]]++)] = {f[(k + 1) % n], f[(k + n - 1) % n], f[(k + 2) % n]};
+            Index const opposite = f[k + 2 < n ? k + 2 : k + 2 - n];
+            corners[static_cast<size_t>(fill[own]++)] = {next, previous, opposite};
+            previous = own;
+            own = next;
+            next = opposite;
         }
     }
     Rings rings;
@@ -114,8 +120,8 @@ std::vector<std::array<Index, 2>> SplitAtCreases(CascadeMesh const& mesh, Rings&
     return along;
 }
 
-std::vector<Index> OrderBreadthFirst(Rings const& rings) {
-    std::vector<Index> order;
+LargeArray<Index> OrderBreadthFirst(Rings const& rings) {
+    LargeArray<Index> order;
     std::vector<char> isSeen(rings.kinds.size(), 0);
     order.reserve(isSeen.size());
     for (Index start = 0; start < static_cast<Index>(isSeen.size()); ++start) {
@@ -134,8 +140,8 @@ std::vector<Index> OrderBreadthFirst(Rings const& rings) {
     return order;
 }
 
-std::vector<Index> Invert(std::span<Index const> vertices) {
-    std::vector<Index> rows(vertices.size());
+LargeArray<Index> Invert(std::span<Index const> vertices) {
+    LargeArray<Index> rows(vertices.size());
     for (size_t row = 0; row < vertices.size(); ++row) rows[vertices[row]] = static_cast<Index>(row);
     return rows;
 }
@@ -159,7 +165,7 @@ CascadeLevel BuildCascadeLevel(CascadeMesh const& mesh, std::span<Index const> c
     level.numSurface = ends[1];
     level.numUnknowns = ends[2];
 
-    std::vector<Index> const rows = Invert(level.vertices), coarseRows = Invert(coarseVertices);
+    LargeArray<Index> const rows = Invert(level.vertices), coarseRows = Invert(coarseVertices);
     level.offsets.reserve(static_cast<size_t>(level.numUnknowns) + 1);
     level.offsets.push_back(0);
     level.neighbours.reserve(rings.neighbours.size());
