@@ -19,7 +19,7 @@ CascadeRings GetRings(CascadeLevel const& level) {
 
 /// What is known of the triangles at a block of surface rows.
 struct BlockShapes {
-    double maxCotangent, minArea;
+    double maxCotangent = -std::numeric_limits<double>::max(), minArea = std::numeric_limits<double>::max();
     double sumMasses = 0.0, numTriangles = 0.0;
 };
 
@@ -45,7 +45,7 @@ MetricQuality Build(CascadeLevel const& level, CascadeRows<Scalar> const& metric
                                       op.edges.data(), op.masses.data(),       op.diagonals.data()};
     std::vector<BlockShapes> blocks(static_cast<size_t>(level.numUnknowns / kRowsPerBlock) + 1);
     ForEachBlock(level.numUnknowns, [&](Index begin, Index end, size_t block) { blocks[block] = BuildBlock(level, job, begin, end); });
-    BlockShapes all{-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
+    BlockShapes all;
     for (BlockShapes const& block : blocks) {
         all.maxCotangent = std::max(all.maxCotangent, block.maxCotangent);
         all.minArea = std::min(all.minArea, block.minArea);

@@ -108,6 +108,23 @@ TEST(CascadeKernel, SameBytesOnEveryInstructionSetAndNumberOfThreads) {
     }
 }
 
+// 2048 rows fill a block, and the next one is empty.
+TEST(CascadeKernel, EmptyBlocksHaveNoShapes) {
+    auto const scene = test::MakeTriangleTorus(32, 16);
+    auto const level = far_ext::BuildCascadeLevel(far_ext::MakeCascadeMesh(*test::MakeRefiner(scene, 1), 1), {}, BoundaryRule::Fixed);
+    ASSERT_EQ(level.numUnknowns, 2048);
+    auto const points = eval::RefineValues<3>(*test::MakeRefiner(scene, 1), 1, scene.positions);
+    CascadeRows<double> metric(2048);
+    for (size_t row = 0; row < metric.size(); ++row) {
+        double const* const p = &points[3 * static_cast<size_t>(level.vertices[row])];
+        metric[row] = {p[0], p[1], p[2], 0.0};
+    }
+    eval::CascadeOperator<double> op;
+    auto const quality = eval::BuildOperator(level, metric, 0.1, op);
+    EXPECT_GT(quality.areaRatio, 0.1);
+    EXPECT_GT(quality.minAngleRadians, 0.1);
+}
+
 // Float and double take different ways through regular rings.
 TEST(CascadeKernel, FloatIsNearDouble) {
     auto const scene = test::MakeIcosphere(2);
