@@ -92,13 +92,7 @@ struct Level {
     }
 
     void BuildWeights() { eval::BuildOperator(level, metric, width, op); }
-    void Sweep() {
-        eval::SweepJacobi(level, op, metric, start, next);
-        for (int sweep = 1; sweep < kNumSweeps; ++sweep) {
-            x.swap(next);
-            eval::SweepJacobi(level, op, x, start, next);
-        }
-    }
+    void Sweep() { eval::SweepJacobi(level, op, metric, start, next, x, kNumSweeps); }
 
     /// Bytes of memory that one sweep must move: rows of x, X0 and the result, each once, and the operator.
     double GetBytesOfSweep() const {

@@ -166,11 +166,8 @@ void Cascade<Scalar>::Sweep(int iterations) {
         if (rows->size() != _x0.size()) *rows = CascadeRows<Scalar>(_x0.size());
         std::copy(_x0.begin() + level.numUnknowns, _x0.end(), rows->begin() + level.numUnknowns);
     }
-    for (int sweep = 0; sweep < iterations; ++sweep) {
-        SweepJacobi(level, _operator, *from, _x0, _next);
-        _x.swap(_next);
-        from = &_x;
-    }
+    SweepJacobi(level, _operator, *from, _x0, _next, _x, iterations);
+    if (iterations % 2 == 1) _x.swap(_next);
 }
 
 template <class Scalar>

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "eval/cascade_operator.h"
+#include "eval/cascade_sweep.h"
 
 namespace limn::eval {
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "eval/instruction_set.h"
+#include "far_ext/cascade_level.h"
 
 namespace limn::eval {
 
@@ -36,6 +37,10 @@ void Sweep(CascadeSweepJob<Scalar> const& job, Index begin, Index end) {
 }
 
 }  // namespace
+
+CascadeRings GetRings(far_ext::CascadeLevel const& level) {
+    return {level.offsets.data(), level.neighbours.data(), level.faceSize, level.numClosed, level.numSurface};
+}
 
 CascadeShapes<float> BuildCascadeRows(CascadeBuildJob<float> const& job, Index begin, Index end) { return Build(job, begin, end); }
 CascadeShapes<double> BuildCascadeRows(CascadeBuildJob<double> const& job, Index begin, Index end) { return Build(job, begin, end); }

@@ -2,6 +2,10 @@
 
 #include "far_ext/types.h"
 
+namespace limn::far_ext {
+struct CascadeLevel;
+}
+
 namespace limn::eval {
 
 /// A level's rings as plain pointers, see far_ext::CascadeLevel.
@@ -11,6 +15,8 @@ struct CascadeRings {
     int faceSize;
     Index numClosed, numSurface;
 };
+
+CascadeRings GetRings(far_ext::CascadeLevel const& level);
 
 /// Where the operator of a level goes and what it is made from, see CascadeOperator. Rows of a metric are 4 Scalars.
 template <class Scalar>

@@ -13,10 +13,6 @@ namespace {
 
 using far_ext::CascadeLevel;
 
-CascadeRings GetRings(CascadeLevel const& level) {
-    return {level.offsets.data(), level.neighbours.data(), level.faceSize, level.numClosed, level.numSurface};
-}
-
 /// What is known of the triangles at a block of surface rows.
 struct BlockShapes {
     double maxCotangent = -std::numeric_limits<double>::max(), minArea = std::numeric_limits<double>::max();
@@ -58,14 +54,6 @@ MetricQuality Build(CascadeLevel const& level, CascadeRows<Scalar> const& metric
     return {std::atan2(1.0, all.maxCotangent), all.minArea / meanArea};
 }
 
-template <class Scalar>
-void Sweep(CascadeLevel const& level, CascadeOperator<Scalar> const& op, CascadeRows<Scalar> const& x,
-           CascadeRows<Scalar> const& x0, CascadeRows<Scalar>& to) {
-    CascadeSweepJob<Scalar> const job{GetRings(level),        op.edges.data(),    op.masses.data(), op.diagonals.data(),
-                                      Scalar(kJacobiDamping), x.data()->data(), x0.data()->data(),  to.data()->data()};
-    ForEachBlock(level.numUnknowns, [&](Index begin, Index end, size_t) { SweepCascadeRows(job, begin, end); });
-}
-
 }  // namespace
 
 MetricQuality BuildOperator(CascadeLevel const& level, CascadeRows<float> const& metric, float width, CascadeOperator<float>& op) {
@@ -74,16 +62,6 @@ MetricQuality BuildOperator(CascadeLevel const& level, CascadeRows<float> const&
 
 MetricQuality BuildOperator(CascadeLevel const& level, CascadeRows<double> const& metric, double width, CascadeOperator<double>& op) {
     return Build(level, metric, width, op);
-}
-
-void SweepJacobi(CascadeLevel const& level, CascadeOperator<float> const& op, CascadeRows<float> const& x,
-                 CascadeRows<float> const& x0, CascadeRows<float>& to) {
-    Sweep(level, op, x, x0, to);
-}
-
-void SweepJacobi(CascadeLevel const& level, CascadeOperator<double> const& op, CascadeRows<double> const& x,
-                 CascadeRows<double> const& x0, CascadeRows<double>& to) {
-    Sweep(level, op, x, x0, to);
 }
 
 }  // namespace limn::eval

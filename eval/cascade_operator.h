@@ -62,14 +62,4 @@ inline CascadeRow<Scalar> FindResidual(far_ext::CascadeLevel const& level, Casca
     return sum + other;
 }
 
-/// Damping of the Jacobi sweep.
-inline constexpr double kJacobiDamping = 0.75;
-
-/// One damped Jacobi sweep, to = X - theta D^-1 ((M + L) X - M X0), for all unknowns, on the calling arena's threads; rows
-/// that stay are not touched.
-void SweepJacobi(far_ext::CascadeLevel const& level, CascadeOperator<float> const& op, CascadeRows<float> const& x,
-                 CascadeRows<float> const& x0, CascadeRows<float>& to);
-void SweepJacobi(far_ext::CascadeLevel const& level, CascadeOperator<double> const& op, CascadeRows<double> const& x,
-                 CascadeRows<double> const& x0, CascadeRows<double>& to);
-
 }  // namespace limn::eval

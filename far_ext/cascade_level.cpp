@@ -1,6 +1,7 @@
 #include "far_ext/cascade_level.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -146,6 +147,17 @@ LargeArray<Index> Invert(std::span<Index const> vertices) {
     return rows;
 }
 
+Index FindBandwidth(CascadeLevel const& level) {
+    Index largest = 0;
+    for (Index row = 0; row < level.numUnknowns; ++row) {
+        for (int k = level.offsets[row]; k < level.offsets[row + 1]; ++k) {
+            Index const other = level.neighbours[k];
+            if (other < level.numUnknowns) largest = std::max(largest, std::abs(other - row));
+        }
+    }
+    return largest;
+}
+
 }  // namespace
 
 CascadeLevel BuildCascadeLevel(CascadeMesh const& mesh, std::span<Index const> coarseVertices, BoundaryRule rule) {
@@ -185,6 +197,7 @@ CascadeLevel BuildCascadeLevel(CascadeMesh const& mesh, std::span<Index const> c
         }
         level.parentOffsets.push_back(static_cast<int>(level.parents.size()));
     }
+    level.bandwidth = FindBandwidth(level);
     return level;
 }
 

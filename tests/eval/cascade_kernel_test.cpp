@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "eval/cascade_operator.h"
+#include "eval/cascade_sweep.h"
 #include "eval/instruction_set.h"
 #include "support/fit_meshes.h"
 #include "support/refined.h"
@@ -105,6 +105,28 @@ TEST(CascadeKernel, SameBytesOnEveryInstructionSetAndNumberOfThreads) {
         }
         ExpectResiduals<float>(name, level);
         ExpectResiduals<double>(name, level);
+    }
+}
+
+// A level large enough to be passed through once for several sweeps, on threads.
+TEST(CascadeKernel, SweepsTogetherAreSweepsOneAfterAnother) {
+    auto const mesh = far_ext::MakeCascadeMesh(*test::MakeRefiner(test::MakeIrregularTriangles(20, 20, 3), 4), 4);
+    auto const level = far_ext::BuildCascadeLevel(mesh, {}, BoundaryRule::Fixed);
+    ASSERT_GT(level.numUnknowns, 100000);
+    EXPECT_LT(level.bandwidth, 8192);
+    Filtered<float> const filtered(level, 0.5f);
+    tbb::global_control const limit(tbb::global_control::max_allowed_parallelism, 4);
+    for (int count : {1, 2, 3, 4, 5, 9}) {
+        CascadeRows<float> one = filtered.x, next = filtered.x, odd = filtered.x, even = filtered.x, inPlace = filtered.x, other = filtered.x;
+        for (int sweep = 0; sweep < count; ++sweep) {
+            eval::SweepJacobi(level, filtered.op, one, filtered.x0, next);
+            one.swap(next);
+        }
+        eval::SweepJacobi(level, filtered.op, filtered.x, filtered.x0, odd, even, count);
+        eval::SweepJacobi(level, filtered.op, inPlace, filtered.x0, other, inPlace, count);
+        for (auto const* rows : {count % 2 == 1 ? &odd : &even, count % 2 == 1 ? &other : &inPlace}) {
+            EXPECT_EQ(std::memcmp(rows->data(), one.data(), one.size() * sizeof one[0]), 0) << count << " sweeps";
+        }
     }
 }
 
