@@ -144,7 +144,7 @@ struct OsdSweep {
 
 void Judge(char const* what, double value, double target, bool isUpperBound) {
     bool const isReached = isUpperBound ? value <= target : value >= target;
-    fmt::print("  => {}: {:.3g}, target at {} {}: {}\n", what, value, isUpperBound ? "most" : "least", target, isReached ? "reached" : "MISSED");
+    fmt::print("  => {}: {:.3f}, target at {} {}: {}\n", what, value, isUpperBound ? "most" : "least", target, isReached ? "reached" : "MISSED");
     std::fflush(stdout);
 }
 
