@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
+#include <cstdlib>
 #include <new>
 #include <utility>
 #include <vector>
@@ -24,12 +24,18 @@ public:
     LargeArrayAllocator(LargeArrayAllocator<U> const&) noexcept {}
 
     T* allocate(std::size_t count) {
-        if (IsLarge(count)) return static_cast<T*>(AllocatePages(GetSize(count)));
-        return static_cast<T*>(::operator new(count * sizeof(T), std::align_val_t(kLine)));
+        std::size_t const size = (count * sizeof(T) + kPage - 1) / kPage * kPage;
+        if (!IsLarge(count)) return static_cast<T*>(::operator new(count * sizeof(T), std::align_val_t(kLine)));
+        void* const block = std::aligned_alloc(kPage, size);
+        if (!block) throw std::bad_alloc();
+#ifdef __linux__
+        ::madvise(block, size, MADV_HUGEPAGE);  // where it is refused, small pages do
+#endif
+        return static_cast<T*>(block);
     }
 
     void deallocate(T* block, std::size_t count) noexcept {
-        if (IsLarge(count)) FreePages(block, GetSize(count));
+        if (IsLarge(count)) std::free(block);
         else ::operator delete(block, std::align_val_t(kLine));
     }
 
@@ -44,26 +50,7 @@ public:
 
 private:
     static constexpr std::size_t kLine = 64, kPage = std::size_t{2} << 20;
-
     static bool IsLarge(std::size_t count) { return count * sizeof(T) >= kPage; }
-    static std::size_t GetSize(std::size_t count) { return (count * sizeof(T) + kPage - 1) / kPage * kPage; }
-
-#ifdef __linux__
-    static void* AllocatePages(std::size_t size) {
-        void* const all = ::mmap(nullptr, size + kPage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-        if (all == MAP_FAILED) throw std::bad_alloc();
-        char* const begin = static_cast<char*>(all);
-        std::size_t const skipped = (kPage - reinterpret_cast<std::uintptr_t>(begin) % kPage) % kPage;
-        if (skipped > 0) ::munmap(begin, skipped);
-        ::munmap(begin + skipped + size, kPage - skipped);
-        ::madvise(begin + skipped, size, MADV_HUGEPAGE);  // where it is refused, small pages do
-        return begin + skipped;
-    }
-    static void FreePages(void* block, std::size_t size) { ::munmap(block, size); }
-#else
-    static void* AllocatePages(std::size_t size) { return ::operator new(size, std::align_val_t(kLine)); }
-    static void FreePages(void* block, std::size_t) { ::operator delete(block, std::align_val_t(kLine)); }
-#endif
 };
 
 /// A std::vector of the above. What resize adds, has no value yet.
