@@ -79,9 +79,8 @@ public:
 
     /// One round to warm up, then the timed ones; prints a line per variant.
     void Run(char const* unit = "items") {
-        size_t const bytes = size_t{128} << 20;  // far beyond any cache
-        std::vector<char> from(bytes, 1), to(bytes, 2);
-        size_t const copy = Add("copy 128 MiB (the memory's limit)", [&] { std::memcpy(to.data(), from.data(), bytes); });
+        std::vector<char> from(kCopiedBytes, 1), to(kCopiedBytes, 2);
+        _copy = Add("copy 128 MiB (the memory's limit)", [&] { std::memcpy(to.data(), from.data(), kCopiedBytes); });
         double const loadBefore = GetLoadAverage();
         for (int round = -1; round < _numRounds; ++round) {
             for (Variant& variant : _variants) {
@@ -99,7 +98,7 @@ public:
             Time const time = Get(i);
             fmt::print("  {:<52} median {:9.2f} ms   best {:9.2f} ms", variant.name, time.median * 1e3, time.best * 1e3);
             if (variant.items > 0.0) fmt::print("   {:8.2f} M {}/s", variant.items / time.median * 1e-6, unit);
-            if (i == copy) fmt::print("   {:8.1f} GB/s", 2.0 * static_cast<double>(bytes) / time.median * 1e-9);
+            if (i == _copy) fmt::print("   {:8.1f} GB/s", GetCopyBandwidth() * 1e-9);
             fmt::print("\n");
         }
         double const loadAfter = GetLoadAverage(), numCores = static_cast<double>(std::thread::hardware_concurrency());
@@ -117,6 +116,9 @@ public:
         return {seconds[seconds.size() / 2], seconds.front(), processor[processor.size() / 2]};
     }
 
+    /// Bytes per second, read and written, of copying memory in the same rounds.
+    double GetCopyBandwidth() const { return 2.0 * static_cast<double>(kCopiedBytes) / Get(_copy).median; }
+
     /// Prints how many times faster `ours` is than `theirs`, by medians, by best times, and by processor
     /// time, which other programs on the machine disturb least.
     void Compare(char const* what, size_t ours, size_t theirs, std::optional<double> target = {}) const {
@@ -130,6 +132,8 @@ public:
     }
 
 private:
+    static constexpr size_t kCopiedBytes = size_t{128} << 20;  // far beyond any cache
+
     struct Variant {
         std::string name;
         std::function<void()> run;
@@ -138,6 +142,7 @@ private:
     };
 
     int _numRounds;
+    size_t _copy = 0;
     std::vector<Variant> _variants;
 };
 

@@ -1,6 +1,7 @@
 #include "eval/cascade.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -42,6 +43,31 @@ CascadeRows<Scalar> Prolong(CascadeLevel const& level, CascadeRows<Scalar> const
     return fine;
 }
 
+template <class Scalar>
+bool IsMoved(CascadeLevel const& level, CascadeOperator<Scalar> const& op, Index row) {
+    return row < level.numUnknowns && op.diagonals[row] != Scalar(0);
+}
+
+/// What nothing moves, is where it was from the start.
+template <class Scalar>
+void ReturnUnmovedRows(CascadeLevel const& level, CascadeOperator<Scalar> const& op, CascadeRows<Scalar> const& x0,
+                       CascadeRows<Scalar>& x) {
+    ForEachRow(level.GetNumRows(), [&](Index row) {
+        if (!IsMoved(level, op, row)) x[row] = x0[row];
+    });
+}
+
+/// Whether ReturnUnmovedRows would change anything.
+template <class Scalar>
+bool IsAnyElsewhere(CascadeLevel const& level, CascadeOperator<Scalar> const& op, CascadeRows<Scalar> const& x0,
+                    CascadeRows<Scalar> const& x) {
+    std::atomic<bool> isAny = false;
+    ForEachRow(level.GetNumRows(), [&](Index row) {
+        if (!IsMoved(level, op, row) && (x[row] != x0[row]).any()) isAny.store(true, std::memory_order_relaxed);
+    });
+    return isAny;
+}
+
 }  // namespace
 
 template <class Scalar>
@@ -76,18 +102,16 @@ bool Cascade<Scalar>::IsDegenerate(MetricQuality const& quality) const {
 
 template <class Scalar>
 CascadeStepReport Cascade<Scalar>::Step(CascadeLevel const& level, int iterations, std::span<double const> givenWidths) {
-    bool const isFirst = _level == nullptr;
     _level = &level;
     _x0 = Prolong(level, _x0);
     _x = Prolong(level, _x);
     if (_options.isGraph) _plane = Prolong(level, _plane);
-    if (_isFrozen || !isFirst) _metric = Prolong(level, _metric);  // to fall back to
+    if (_isFrozen) _metric = Prolong(level, _metric);
     _hasGivenWidths = !givenWidths.empty();
     for (size_t row = 0; _hasGivenWidths && row < _x.size(); ++row) {
         _x[row][3] = _x0[row][3] = static_cast<Scalar>(givenWidths[level.vertices[row]]);
         if (_options.isGraph) _plane[row][3] = _x0[row][3];
     }
-    if (isFirst) _metric = _options.isGraph ? _plane : _x;
     return Repeat(iterations);
 }
 
@@ -119,29 +143,26 @@ CascadeStepReport Cascade<Scalar>::Solve(int iterations) {
     }
     report.minAngleRadians = quality.minAngleRadians;
     report.areaRatio = quality.areaRatio;
-    _isFrozen = _isFrozen || IsDegenerate(quality);
+    if (!_isFrozen && IsDegenerate(quality)) {
+        _isFrozen = true;
+        if (_metric.empty()) _metric = present;                                 // there is no coarser level
+        if (_metric.size() != _x.size()) _metric = Prolong(level, _metric);  // it is still the coarser level's
+    }
     report.isMetricFrozen = _isFrozen;
     if (_isFrozen) {
         for (size_t row = 0; row < _x.size(); ++row) _metric[row][3] = _x[row][3];
         BuildOperator(level, _metric, width, _operator);
-    } else {
-        _metric = present;
     }
-    ForEachRow(level.GetNumRows(), [&](Index row) {  // what nothing moves, is where it was from the start
-        if (row >= level.numUnknowns || _operator.diagonals[row] == Scalar(0)) _x[row] = _x0[row];
-    });
 
     if (_options.solver == CascadeSolver::Jacobi) {
-        _next = _x;
-        for (int sweep = 0; sweep < iterations; ++sweep) {
-            SweepJacobi(level, _operator, _x, _x0, _next);
-            _x.swap(_next);
-        }
+        Sweep(iterations);
         report.sweeps = iterations;
         report.residual = _options.measuresResidual ? MeasureResidual(level, _operator, _x, _x0)
                                                     : std::numeric_limits<double>::quiet_NaN();
         return report;
     }
+    if (!_isFrozen) _metric = present;
+    ReturnUnmovedRows(level, _operator, _x0, _x);
     if constexpr (std::is_same_v<Scalar, double>) {
         CascadeSolve const solve = _options.solver == CascadeSolver::Exact
                                        ? SolveByCholesky(level, _operator, _x0, _x)
@@ -151,6 +172,25 @@ CascadeStepReport Cascade<Scalar>::Solve(int iterations) {
         report.converged = solve.converged || _options.tolerance == 0.0;  // a count was asked for, and done
     }
     return report;
+}
+
+template <class Scalar>
+void Cascade<Scalar>::Sweep(int iterations) {
+    CascadeLevel const& level = *_level;
+    CascadeRows<Scalar> const* from = &_x;
+    if (!_isFrozen && !_options.isGraph && iterations > 0 && !IsAnyElsewhere(level, _operator, _x0, _x)) {
+        _metric.swap(_x);  // the surface as it is now is the metric, and sweeps have two other buffers
+        from = &_metric;
+    } else {
+        if (!_isFrozen) _metric = _options.isGraph ? _plane : _x;
+        ReturnUnmovedRows(level, _operator, _x0, _x);
+    }
+    for (CascadeRows<Scalar>* rows : {&_x, &_next}) {
+        if (rows->size() != _x0.size()) *rows = CascadeRows<Scalar>(_x0.size());
+        std::copy(_x0.begin() + level.numUnknowns, _x0.end(), rows->begin() + level.numUnknowns);
+    }
+    SweepJacobi(level, _operator, *from, _x0, _next, _x, iterations);
+    if (iterations % 2 == 1) _x.swap(_next);
 }
 
 template <class Scalar>

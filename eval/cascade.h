@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "eval/cascade_operator.h"
+#include "eval/cascade_sweep.h"
 
 namespace limn::eval {
 
@@ -77,6 +78,7 @@ public:
 
 private:
     CascadeStepReport Solve(int iterations);
+    void Sweep(int iterations);
     std::vector<double> GetPublic(CascadeRows<Scalar> const& rows) const;
     CascadeRows<Scalar> MakeRows(std::span<double const> values) const;
     bool IsDegenerate(MetricQuality const& quality) const;
@@ -84,7 +86,7 @@ private:
     CascadeOptions _options;
     far_ext::CascadeLevel const* _level = nullptr;
     CascadeRows<Scalar> _x, _x0;
-    CascadeRows<Scalar> _metric;  // what the operator was built from
+    CascadeRows<Scalar> _metric;  // the last one not degenerate; of the coarser level until that is known of this one's
     CascadeRows<Scalar> _next;    // the other buffer of sweeps
     CascadeRows<Scalar> _plane;   // of a graph: x and y
     CascadeOperator<Scalar> _operator;

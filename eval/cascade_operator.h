@@ -1,11 +1,10 @@
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Core>
 
 #include "eval/row_blocks.h"
 #include "far_ext/cascade_level.h"
+#include "far_ext/large_array.h"
 
 namespace limn::eval {
 
@@ -13,7 +12,7 @@ namespace limn::eval {
 template <class Scalar>
 using CascadeRow = Eigen::Array<Scalar, 4, 1>;
 template <class Scalar>
-using CascadeRows = std::vector<CascadeRow<Scalar>>;
+using CascadeRows = far_ext::LargeArray<CascadeRow<Scalar>>;
 
 /// How well the triangles of a metric are shaped; of quads, those of both diagonals.
 struct MetricQuality {
@@ -33,9 +32,9 @@ struct MetricQuality {
 /// Source  [Diewald02] Sec. 7 and 8
 template <class Scalar>
 struct CascadeOperator {
-    std::vector<Scalar> edges;      ///< -L_ij, per entry of CascadeLevel::neighbours
-    std::vector<Scalar> masses;     ///< M_ii, per unknown
-    std::vector<Scalar> diagonals;  ///< M_ii + L_ii, per unknown; 0 where nothing moves a row: X = X0 there
+    far_ext::LargeArray<Scalar> edges;      ///< -L_ij, per entry of CascadeLevel::neighbours
+    far_ext::LargeArray<Scalar> masses;     ///< M_ii, per unknown
+    far_ext::LargeArray<Scalar> diagonals;  ///< M_ii + L_ii, per unknown; 0 where nothing moves a row: X = X0 there
 };
 
 /// Builds the operator from a metric, on the calling arena's threads.
@@ -61,20 +60,6 @@ inline CascadeRow<Scalar> FindResidual(far_ext::CascadeLevel const& level, Casca
     }
     if (k < end) sum += op.edges[k] * (x[level.neighbours[k]] - own);
     return sum + other;
-}
-
-/// Damping of the Jacobi sweep.
-inline constexpr double kJacobiDamping = 0.75;
-
-/// One damped Jacobi sweep, to = X - theta D^-1 ((M + L) X - M X0), for all unknowns; rows that stay are not touched.
-template <class Scalar>
-void SweepJacobi(far_ext::CascadeLevel const& level, CascadeOperator<Scalar> const& op, CascadeRows<Scalar> const& x,
-                 CascadeRows<Scalar> const& x0, CascadeRows<Scalar>& to) {
-    ForEachRow(level.numUnknowns, [&](Index row) {
-        Scalar const diagonal = op.diagonals[row];
-        Scalar const scale = diagonal > Scalar(0) ? Scalar(kJacobiDamping) / diagonal : Scalar(0);
-        to[row] = x[row] + scale * FindResidual(level, op, x.data(), x0.data(), row);
-    });
 }
 
 }  // namespace limn::eval

@@ -1,6 +1,7 @@
 #include "far_ext/cascade_level.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "far_ext/error.h"
+#include "far_ext/large_array.h"
 
 namespace limn::far_ext {
 
@@ -23,8 +25,8 @@ enum class RowKind : char { Closed, Open, Crease, Fixed };
 
 /// Rings of all vertices in the public order.
 struct Rings {
-    std::vector<int> offsets{0};
-    std::vector<Index> neighbours;
+    LargeArray<int> offsets{0};
+    LargeArray<Index> neighbours;
     std::vector<RowKind> kinds;
 };
 
@@ -57,15 +59,20 @@ bool OrderCorners(Index vertex, std::span<Corner> corners) {
 
 Rings FindRings(CascadeMesh const& mesh, BoundaryRule rule) {
     size_t const numVertices = static_cast<size_t>(mesh.numVertices), n = static_cast<size_t>(mesh.faceSize);
-    std::vector<int> begins(numVertices + 1, 0);
+    LargeArray<int> begins(numVertices + 1, 0);
     for (Index vertex : mesh.faces) ++begins[static_cast<size_t>(vertex) + 1];
     for (size_t i = 0; i < numVertices; ++i) begins[i + 1] += begins[i];
-    std::vector<Corner> corners(mesh.faces.size());
-    std::vector<int> fill(begins.begin(), begins.end() - 1);
+    LargeArray<Corner> corners(mesh.faces.size());
+    LargeArray<int> fill(begins.begin(), begins.end() - 1);
     for (size_t face = 0; face < mesh.faces.size(); face += n) {
         Index const* const f = &mesh.faces[face];
+        Index previous = f[n - 1], own = f[0], next = f[1];
         for (size_t k = 0; k < n; ++k) {
-            corners[static_cast<size_t>(fill[f[k]]++)] = {f[(k + 1) % n], f[(k + n - 1) % n], f[(k + 2) % n]};
+            Index const opposite = f[k + 2 < n ? k + 2 : k + 2 - n];
+            corners[static_cast<size_t>(fill[own]++)] = {next, previous, opposite};
+            previous = own;
+            own = next;
+            next = opposite;
         }
     }
     Rings rings;
@@ -114,8 +121,8 @@ std::vector<std::array<Index, 2>> SplitAtCreases(CascadeMesh const& mesh, Rings&
     return along;
 }
 
-std::vector<Index> OrderBreadthFirst(Rings const& rings) {
-    std::vector<Index> order;
+LargeArray<Index> OrderBreadthFirst(Rings const& rings) {
+    LargeArray<Index> order;
     std::vector<char> isSeen(rings.kinds.size(), 0);
     order.reserve(isSeen.size());
     for (Index start = 0; start < static_cast<Index>(isSeen.size()); ++start) {
@@ -134,10 +141,21 @@ std::vector<Index> OrderBreadthFirst(Rings const& rings) {
     return order;
 }
 
-std::vector<Index> Invert(std::span<Index const> vertices) {
-    std::vector<Index> rows(vertices.size());
+LargeArray<Index> Invert(std::span<Index const> vertices) {
+    LargeArray<Index> rows(vertices.size());
     for (size_t row = 0; row < vertices.size(); ++row) rows[vertices[row]] = static_cast<Index>(row);
     return rows;
+}
+
+Index FindBandwidth(CascadeLevel const& level) {
+    Index largest = 0;
+    for (Index row = 0; row < level.numUnknowns; ++row) {
+        for (int k = level.offsets[row]; k < level.offsets[row + 1]; ++k) {
+            Index const other = level.neighbours[k];
+            if (other < level.numUnknowns) largest = std::max(largest, std::abs(other - row));
+        }
+    }
+    return largest;
 }
 
 }  // namespace
@@ -159,7 +177,7 @@ CascadeLevel BuildCascadeLevel(CascadeMesh const& mesh, std::span<Index const> c
     level.numSurface = ends[1];
     level.numUnknowns = ends[2];
 
-    std::vector<Index> const rows = Invert(level.vertices), coarseRows = Invert(coarseVertices);
+    LargeArray<Index> const rows = Invert(level.vertices), coarseRows = Invert(coarseVertices);
     level.offsets.reserve(static_cast<size_t>(level.numUnknowns) + 1);
     level.offsets.push_back(0);
     level.neighbours.reserve(rings.neighbours.size());
@@ -179,6 +197,7 @@ CascadeLevel BuildCascadeLevel(CascadeMesh const& mesh, std::span<Index const> c
         }
         level.parentOffsets.push_back(static_cast<int>(level.parents.size()));
     }
+    level.bandwidth = FindBandwidth(level);
     return level;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -51,6 +52,7 @@ struct CascadeLevel {
     std::vector<Index> neighbours;   ///< rows
     std::vector<int> parentOffsets;  ///< per row, one more: into parents
     std::vector<Index> parents;      ///< rows of the coarser level
+    Index bandwidth = std::numeric_limits<Index>::max();  ///< at least the difference of neighbours that are both unknowns
 
     Index GetNumRows() const { return static_cast<Index>(vertices.size()); }
 };
