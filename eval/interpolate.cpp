@@ -94,35 +94,47 @@ Interpolator::Interpolator(Far::TopologyRefiner const& refiner, int level, far_e
 
 namespace {
 
-/// Channels `first` to `first` + count of rows of `length`: out[i] = values[vertices[i]].
-far_ext::LargeArray<double> Gather(std::span<double const> values, int length, int first, int count, std::vector<Index> const& vertices) {
-    far_ext::LargeArray<double> rows(vertices.size() * static_cast<size_t>(count));
-    ForEachChunk(static_cast<Index>(vertices.size()), [&](Index begin, Index end) {
-        for (Index row = begin; row < end; ++row) {
-            double const* const from = &values[static_cast<size_t>(vertices[row]) * static_cast<size_t>(length) + static_cast<size_t>(first)];
-            std::copy_n(from, count, &rows[static_cast<size_t>(row) * static_cast<size_t>(count)]);
-        }
+/// Channels `first` to `first` + count of rows of `length`, 1 to 4 of them: rows[i] = values[vertices[i]].
+void Gather(std::span<double const> values, int length, int first, int count, std::vector<Index> const& vertices, std::span<double> rows) {
+    WithLength(count, [&]<int Count>() {
+        ForEachChunk(static_cast<Index>(vertices.size()), [&](Index begin, Index end) {
+            for (Index row = begin; row < end; ++row) {
+                double const* const from = &values[static_cast<size_t>(vertices[row]) * static_cast<size_t>(length) + static_cast<size_t>(first)];
+                DoubleRow<Count>::Load(from, 0).Store(rows.data(), row);
+            }
+        });
     });
-    return rows;
 }
 
 /// The reverse.
 void Scatter(std::span<double const> rows, int length, int first, int count, std::vector<Index> const& vertices, std::span<double> values) {
-    ForEachChunk(static_cast<Index>(vertices.size()), [&](Index begin, Index end) {
-        for (Index row = begin; row < end; ++row) {
-            double* const to = &values[static_cast<size_t>(vertices[row]) * static_cast<size_t>(length) + static_cast<size_t>(first)];
-            std::copy_n(&rows[static_cast<size_t>(row) * static_cast<size_t>(count)], count, to);
-        }
+    WithLength(count, [&]<int Count>() {
+        ForEachChunk(static_cast<Index>(vertices.size()), [&](Index begin, Index end) {
+            for (Index row = begin; row < end; ++row) {
+                double* const to = &values[static_cast<size_t>(vertices[row]) * static_cast<size_t>(length) + static_cast<size_t>(first)];
+                DoubleRow<Count>::Load(rows.data(), row).Store(to, 0);
+            }
+        });
     });
+}
+
+/// Calls work(first, count) for blocks of at most four channels.
+template <class Work>
+void ForEachBlockOfChannels(int length, Work const& work) {
+    constexpr int kMaxBlock = 4;
+    for (int first = 0; first < length; first += kMaxBlock) work(first, std::min(kMaxBlock, length - first));
 }
 
 }  // namespace
 
 std::vector<double> Interpolator::FindLimits(std::span<double const> values, int length) const {
-    auto const rows = Gather(values, length, 0, length, _vertices);
-    std::vector<double> limits(rows.size()), result(rows.size());
-    _A.Apply(rows, length, limits);
-    Scatter(limits, length, 0, length, _vertices, result);
+    std::vector<double> result(values.size());
+    ForEachBlockOfChannels(length, [&](int first, int count) {
+        far_ext::LargeArray<double> rows(_vertices.size() * static_cast<size_t>(count)), limits(rows.size());
+        Gather(values, length, first, count, _vertices, rows);
+        _A.Apply(rows, count, limits);
+        Scatter(limits, length, first, count, _vertices, result);
+    });
     return result;
 }
 
@@ -131,18 +143,16 @@ SolveReport Interpolator::Solve(std::span<double const> M, int length, std::span
     SolveReport report;
     report.converged = true;
     double const size = FindSize(M, length);
-    constexpr int kMaxBlock = 4;
-    for (int first = 0; first < length; first += kMaxBlock) {
-        int const count = std::min(kMaxBlock, length - first);
-        auto data = Gather(M, length, first, count, _vertices);
-        std::vector<double> own(count < length ? data.size() : 0);
-        std::span<double> const solution = count < length ? std::span(own) : P;  // P serves as memory until the end
+    ForEachBlockOfChannels(length, [&](int first, int count) {
+        far_ext::LargeArray<double> data(_vertices.size() * static_cast<size_t>(count)), own(count < length ? data.size() : 0);
+        std::span<double> const solution = count < length ? std::span<double>(own) : P;  // P serves as memory until the end
+        Gather(M, length, first, count, _vertices, data);
         std::copy(data.begin(), data.end(), solution.begin());
         LimitProblem problem{_A, count, data.data(), solution.data(), size, options.tolerance, options.maxIterations, options.onIteration};
         Join(report, SolveBlock(problem, options));
         std::copy(solution.begin(), solution.end(), data.begin());
         Scatter(data, length, first, count, _vertices, P);
-    }
+    });
     if (report.worstVertex >= 0) report.worstVertex = _vertices[report.worstVertex];
     return report;
 }

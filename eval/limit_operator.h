@@ -116,31 +116,50 @@ Row SumOf(Index const* vertices, typename Row::Scalar const* x) {
 template <class Row, class Visit>
 void LimitOperator::ForEachRow(Index begin, Index end, Stage first, typename Row::Scalar const* x, Visit visit) const {
     using Scalar = typename Row::Scalar;
-    for (Index row = begin; row < end; ++row) {
-        RowClass const& c = GetClass(row);
-        if (c.stage < first) continue;
-        Index const* k = _indices.data() + _starts[row];
-        Index const* const stop = _indices.data() + _starts[row + 1];
-        Row const own = Row::Load(x, row);
-        if (c.isExplicit) {
-            double const* weight = _weights.data() + *k;
-            Row y = static_cast<Scalar>(*weight) * own;
-            for (++k; k < stop; ++k) y = y + static_cast<Scalar>(*++weight) * Row::Load(x, *k);
-            visit(row, c, own, y);
+    for (Index row = begin; row < end;) {  // runs of one class
+        unsigned short const number = _classes[row];
+        Index runEnd = row + 1;
+        while (runEnd < end && _classes[runEnd] == number) ++runEnd;
+        RowClass const& c = _table[number];
+        if (c.stage < first) {
+            row = runEnd;
             continue;
         }
-        Row edges, others;
-        if (c.numEdges == 4 && stop - k == 8) {  // the usual vertex among quads
-            edges = SumOf<4, Row>(k, x);
-            others = SumOf<4, Row>(k + 4, x);
-        } else if (c.numEdges == 3 && stop - k == 6) {  // the usual other one
-            edges = SumOf<3, Row>(k, x);
-            others = SumOf<3, Row>(k + 3, x);
-        } else {
-            for (Index const* const middle = k + c.numEdges; k < middle; ++k) edges = edges + Row::Load(x, *k);
-            for (; k < stop; ++k) others = others + Row::Load(x, *k);
+        Scalar const w0 = c.Weight<Scalar>(0), w1 = c.Weight<Scalar>(1), w2 = c.Weight<Scalar>(2);
+        auto const finish = [&](Index at, Row const& edges, Row const& others) {
+            Row const own = Row::Load(x, at);
+            visit(at, c, own, w0 * own + w1 * edges + w2 * others);
+        };
+        // Vertices with as many faces as edges, among quads.
+        auto const sweep = [&]<int Valence>() {
+            Index const* k = _indices.data() + _starts[row];
+            for (; row < runEnd && _starts[row + 1] - _starts[row] == 2 * Valence; ++row, k += 2 * Valence) {
+                finish(row, SumOf<Valence, Row>(k, x), SumOf<Valence, Row>(k + Valence, x));
+            }
+        };
+        if (!c.isExplicit) {
+            if (c.numEdges == 4) sweep.template operator()<4>();
+            if (c.numEdges == 3) sweep.template operator()<3>();
+            if (c.numEdges == 5) sweep.template operator()<5>();
+            if (c.numEdges == 6) sweep.template operator()<6>();
+            if (c.numEdges == 7) sweep.template operator()<7>();
         }
-        visit(row, c, own, c.Weight<Scalar>(0) * own + c.Weight<Scalar>(1) * edges + c.Weight<Scalar>(2) * others);
+        for (; row < runEnd; ++row) {
+            Index const* k = _indices.data() + _starts[row];
+            Index const* const stop = _indices.data() + _starts[row + 1];
+            if (c.isExplicit) {
+                Row const own = Row::Load(x, row);
+                double const* weight = _weights.data() + *k;
+                Row y = static_cast<Scalar>(*weight) * own;
+                for (++k; k < stop; ++k) y = y + static_cast<Scalar>(*++weight) * Row::Load(x, *k);
+                visit(row, c, own, y);
+            } else {
+                Row edges, others;
+                for (Index const* const middle = k + c.numEdges; k < middle; ++k) edges = edges + Row::Load(x, *k);
+                for (; k < stop; ++k) others = others + Row::Load(x, *k);
+                finish(row, edges, others);
+            }
+        }
     }
 }
 
