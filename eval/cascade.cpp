@@ -30,6 +30,7 @@ void CheckLengths(std::span<double const> values, char const* what) {
 }
 
 constexpr double kLeastAngleRadians = 3.14159265358979323846 / 180.0, kLeastAreaRatio = 1e-8;
+constexpr double kLeastAreaLeft = 1e-12;  // of the start mesh': what is smaller has a shape of rounding
 
 template <class Scalar>
 CascadeRows<Scalar> Prolong(CascadeLevel const& level, CascadeRows<Scalar> const& coarse) {
@@ -97,7 +98,7 @@ Cascade<Scalar>::Cascade(std::span<double const> positions, std::span<double con
 
 template <class Scalar>
 bool Cascade<Scalar>::IsDegenerate(MetricQuality const& quality) const {
-    return !(quality.minAngleRadians >= _leastAngle && quality.areaRatio >= _leastAreaRatio);
+    return !(quality.minAngleRadians >= _leastAngle && quality.areaRatio >= _leastAreaRatio && quality.area >= kLeastAreaLeft * _startArea);
 }
 
 template <class Scalar>
@@ -140,6 +141,7 @@ CascadeStepReport Cascade<Scalar>::Solve(int iterations) {
     if (_leastAngle < 0.0) {  // the first metric is that of the start mesh
         _leastAngle = std::min(kLeastAngleRadians, quality.minAngleRadians / 2);
         _leastAreaRatio = std::min(kLeastAreaRatio, quality.areaRatio / 4);
+        _startArea = quality.area;
     }
     report.minAngleRadians = quality.minAngleRadians;
     report.areaRatio = quality.areaRatio;

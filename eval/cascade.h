@@ -36,7 +36,7 @@ struct CascadeStepReport {
 /// there, and solves (M + L) X = M X0 for a surface X near the start mesh X0.
 ///
 /// Metric   Where it degenerates (an angle below a degree, or half of the start mesh's smallest if that is less; an area
-///          below 1e-8 of the mean), the level and all finer ones keep that of the level before, interpolated.
+///          below 1e-8 of the mean, all of it below 1e-12 of the start mesh's), the level and all finer ones keep that of the level before, interpolated.
 /// Widths   of vertices are filtered like positions, but 0 stays 0: where none was painted, nothing ever moves.
 /// Scalar   float: Jacobi only. All sums and solves have the same bits whatever the threads.
 /// Source   [Diewald02] Sec. 5 to 8
@@ -91,7 +91,7 @@ private:
     CascadeRows<Scalar> _plane;   // of a graph: x and y
     CascadeOperator<Scalar> _operator;
     bool _isFrozen = false, _hasGivenWidths = false;
-    double _leastAngle = -1.0, _leastAreaRatio = 0.0;
+    double _leastAngle = -1.0, _leastAreaRatio = 0.0, _startArea = 0.0;
 };
 
 /// Sweeps on a level so that all together cost about as much as the finest: n 2^(2 (kmax - k)) for Jacobi,

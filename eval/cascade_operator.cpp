@@ -51,7 +51,7 @@ MetricQuality Build(CascadeLevel const& level, CascadeRows<Scalar> const& metric
     if (!(all.sumMasses > 0.0)) return {};
     // A mass is a third of a row's triangles, of the four of a quad each with half of its weight.
     double const meanArea = (level.faceSize == 3 ? 6.0 : 12.0) * all.sumMasses / all.numTriangles;
-    return {std::atan2(1.0, all.maxCotangent), all.minArea / meanArea};
+    return {std::atan2(1.0, all.maxCotangent), all.minArea / meanArea, all.sumMasses};
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ using CascadeRows = far_ext::LargeArray<CascadeRow<Scalar>>;
 struct MetricQuality {
     double minAngleRadians = 0.0;
     double areaRatio = 0.0;  ///< smallest area to the mean one
+    double area = 0.0;       ///< of all that is not fixed
 };
 
 /// The operator M + L of one level for one metric.
