@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 
+#include "eval/row_blocks.h"
 #include "far_ext/error.h"
 
 namespace limn::eval {

@@ -4,8 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include <tbb/parallel_for.h>
-
+#include "eval/step_pass.h"
 #include "eval/step_schedule.h"
 #include "far_ext/large_array.h"
 
@@ -40,29 +39,18 @@ public:
     explicit Correction(LimitOperator const& A)
         : _A(A), _right(static_cast<size_t>(A.GetNumVertices()) * Row::kStride, 0.0f), _current(_right), _previous(_right) {}
 
-    /// How many steps are best taken together: several where a pass over all rows goes through more than the cache.
-    int GetStepsPerPass() const {
-        constexpr int kSteps = 4;
-        return GetNumBlocks() >= 2 * kSteps * GetLag() ? kSteps : 1;
-    }
+    int GetStepsPerPass() const { return CountStepsPerPass(_A.GetNumVertices(), _A.GetBandwidth()); }
 
-    /// Steps in place, with max |R - A E| from before each of them. Each goes over the rows so far behind the one before that
-    /// what it reads is done, and what it writes is read no more. The same bits as one step after the other, and A is read
-    /// once for all.
+    /// Steps in place, with max |R - A E| from before each of them.
     std::vector<float> Take(std::span<Step const> steps) {
-        Index const numSteps = static_cast<Index>(steps.size()), numBlocks = GetNumBlocks(), lag = GetLag();
-        if (numSteps == 1) return {TakeOne(steps[0])};
-        std::vector<std::vector<float>> maxima(steps.size(), std::vector<float>(static_cast<size_t>(numBlocks), 0.0f));
+        if (steps.size() == 1) return {TakeOne(steps[0])};
+        Index const numRows = _A.GetNumVertices();
+        std::vector<std::vector<float>> maxima(steps.size(), std::vector<float>(static_cast<size_t>(numRows / kRowsPerBlock) + 1, 0.0f));
         float* const buffers[] = {_current.data(), _previous.data()};
-        for (Index front = 0; front < numBlocks + lag * (numSteps - 1); front += kBlocksAbreast) {
-            tbb::parallel_for(Index{0}, numSteps * kBlocksAbreast, [&](Index task) {
-                Index const step = task / kBlocksAbreast, block = front - lag * step + task % kBlocksAbreast;
-                if (block < 0 || block >= numBlocks) return;
-                Index const begin = block * kRowsPerBlock, end = std::min(begin + kRowsPerBlock, _A.GetNumVertices());
-                maxima[step][block] = TakeRows(steps[step], begin, end, buffers[step % 2], buffers[(step + 1) % 2]);
-            });
-        }
-        if (numSteps % 2 == 1) std::swap(_current, _previous);
+        RunStepsInOnePass(static_cast<Index>(steps.size()), numRows, _A.GetBandwidth(), [&](Index step, Index begin, Index end, size_t block) {
+            maxima[step][block] = TakeRows(steps[step], begin, end, buffers[step % 2], buffers[(step + 1) % 2]);
+        });
+        if (steps.size() % 2 == 1) std::swap(_current, _previous);
         std::vector<float> residuals;
         for (auto const& ofStep : maxima) residuals.push_back(std::sqrt(FindLargest(ofStep)));
         return residuals;
@@ -88,13 +76,6 @@ public:
 
 private:
     using Row = FloatRow<Lanes>;
-
-    static constexpr Index kRowsPerBlock = LimitOperator::kRowsPerBlock, kBlocksAbreast = 4;
-
-    Index GetNumBlocks() const { return (_A.GetNumVertices() + kRowsPerBlock - 1) / kRowsPerBlock; }
-
-    /// Blocks from one step to the next: those that are worked on at once, and those that neighbours reach into.
-    Index GetLag() const { return kBlocksAbreast + (_A.GetBandwidth() + kRowsPerBlock - 1) / kRowsPerBlock; }
 
     float TakeOne(Step step) {
         auto const maxima =

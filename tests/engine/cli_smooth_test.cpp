@@ -231,6 +231,7 @@ TEST_F(CliSmooth, WidthOnEdgesRoundsThemAndLeavesTheRestToTheBit) {
         double const distance = std::hypot(from.x() - 1.0, from.z() - 1.0);
         // 0.2 up to a distance of one width, none beyond three; the finest edges are 1/16 long.
         if (distance <= 0.2) { EXPECT_FLOAT_EQ(widths[i], 0.2f); }
+        if (distance > 0.5 && distance < 0.59) { EXPECT_GT(widths[i], 0.0f); }
         if (distance >= 0.6) { EXPECT_EQ(widths[i], 0.0f); }
         if (distance >= 0.6 + 0.1) { EXPECT_EQ(from, to) << i; }
         numMoved += from != to;
@@ -307,6 +308,14 @@ TEST_F(CliSmooth, PaintedWidthFromAnImage) {
     bool hasEdge = false;
     for (size_t i = 0; i < widths.size(); ++i) hasEdge |= std::abs(widths[i] - 0.2f) < 0.05f;
     EXPECT_TRUE(hasEdge);
+    // Rows come from the top, where v is 1 (that side's y = 1).
+    std::string const upper = folder.Write("upper.pgm", "P2 1 4 255\n255 255 0 0\n");
+    auto const half = GetWidths(Smooth(cube, {"--levels", "4", "--width-texture", upper, "--width", "0.4"}));
+    for (size_t i = 0; i < half.size(); ++i) {
+        Vector const p = At(start, i);
+        if (p.z() < 1 || std::abs(p.x()) == 1 || std::abs(p.y()) < 0.5 || std::abs(p.y()) == 1) continue;
+        EXPECT_NEAR(half[i], p.y() > 0 ? 0.4 : 0.0, 1e-6);
+    }
     // Values of an image of constant white are the width itself.
     std::string const white = folder.Write("all.pgm", "P2 1 1 255\n255\n");
     EXPECT_LT(test::LargestDifference(Smooth(cube, {"--levels", "3", "--width-texture", white, "--width", "0.3"}).positions,
