@@ -42,6 +42,7 @@ void CheckOptions(Arguments const& a, CLI::App const& verb) {
     }
     if (verb.count("--width-scale") && !a.isLocal) throw Error(ErrorCode::BadOption, "--width-scale needs --local");
     Refuse(verb, {"--sweeps", "--iterations", "--tolerance"});
+    if (std::isnan(a.options.tolerance)) throw Error(ErrorCode::BadOption, "--tolerance: give a number from 1e-14 to 1");
     if (a.solver != "cg" && verb.count("--tolerance")) throw Error(ErrorCode::BadOption, fmt::format("--tolerance is for --solver cg, not {}", a.solver));
     if (a.solver == "exact") {
         for (char const* name : {"--sweeps", "--iterations"}) {
@@ -171,7 +172,7 @@ Verb AddSmooth(CLI::App& app) {
     width(verb->add_option("--width-edges", a->widthEdges, "CSV v0,v1,width: rounds these edges, and leaves faces untouched"));
     width(verb->add_option("--width-texture", a->widthTexture, "image through the texture coordinates, 0 to 1 times --width or --width-factor"));
     auto const solve = [](CLI::Option* option) { return option->group("Solving"); };
-    solve(verb->add_option("--refinement", a->refinement, "quadrisect (default): each face in four; bisect: triangles in two"))
+    solve(verb->add_option("--refinement", a->refinement, "quadrisect (default): triangles in four, other faces into quads (--scheme catmark: triangles, too); bisect: triangles in two"))
         ->check(CLI::IsMember({"quadrisect", "bisect"}));
     solve(verb->add_option("--solver", a->solver, "cg (default), jacobi or exact"))->check(CLI::IsMember({"exact", "cg", "jacobi"}));
     solve(verb->add_option("--sweeps", a->options.sweeps, "on the finest level, more on coarser ones by the a-priori rule (jacobi: default 1)"))

@@ -505,6 +505,7 @@ TEST_F(CliSmooth, WhatIsWrongIsNamed) {
              Wrong{{"--solver", "exact", "--sweeps", "1"}, 2, "--sweeps means nothing"},
              Wrong{{"--solver", "jacobi", "--tolerance", "1e-3"}, 2, "--tolerance is for"},
              Wrong{{"--sweeps", "1", "--iterations", "2"}, 2, "exclude"},
+             Wrong{{"--tolerance", "nan"}, 2, "--tolerance"},
              Wrong{{"--levels", "11"}, 2, "--levels"},
              Wrong{{"--graph", "--preserve-volume"}, 2, "exclude"},
              Wrong{{"--width-map", csv("a.csv", "vertex,width\n8,1\n")}, 3, "vertex 8 does not exist"},
