@@ -402,6 +402,21 @@ TEST_F(CliSmooth, VolumeIsPreserved) {
     }
 }
 
+// The force that keeps the volume acts where the filter does; open components have no volume to keep.
+TEST_F(CliSmooth, VolumeIsPreservedWhereTheFilterActs) {
+    std::string const cube = WriteCube(), map = folder.Write("map.csv", "vertex,width\n7,0.5\n");
+    auto const found = Smooth(cube, {"--levels", "4", "--width-map", map, "--preserve-volume"});
+    EXPECT_NEAR(MeasureVolume(found), 8.0, 1e-8);
+    EXPECT_LT(MeasureVolume(Smooth(cube, {"--levels", "4", "--width-map", map})), 7.98);
+    auto const start = Interpolate(engine::ReadMesh(cube), 4);
+    for (size_t i = 0; i < start.size() / 3; ++i) {
+        if (At(start, i).maxCoeff() < 0.99) { EXPECT_EQ(At(found.positions, i), At(start, i)); }
+    }
+    auto const open = Smooth(grid, {"--levels", "2", "--preserve-volume"}).positions;
+    EXPECT_FALSE(Report().contains("volumes"));
+    EXPECT_EQ(open, Smooth(grid, {"--levels", "2"}).positions);
+}
+
 // A cube whose edges are all creased keeps its shape to rounding; without the flag it gets round.
 TEST_F(CliSmooth, CreasesAreKeptWhereAskedFor) {
     std::string const cube = folder.Write("creased.obj", test::ReadText(WriteCube()) +
@@ -443,6 +458,8 @@ TEST_F(CliSmooth, HeightFieldsKeepTheirPlane) {
     EXPECT_LT(highest, 0.6 + 1e-12);  // the maximum principle: triangles of this grid are not obtuse
     EXPECT_GT(lowest, -1e-12);
     EXPECT_TRUE(Contains(ExpectError(Limn({"smooth", icosa, "-o", folder / "x.obj", "--graph"}), 3), "--graph needs heights"));
+    std::string const folded = folder.Write("folded.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.1 0.2 1\nf 1 2 3\nf 3 2 4\n");
+    EXPECT_TRUE(Contains(ExpectError(Limn({"smooth", folded, "-o", folder / "x.obj", "--graph"}), 3), "face 1 (line 6) is folded"));
 }
 
 TEST_F(CliSmooth, ADegeneratingMetricIsFrozenAndSaid) {
