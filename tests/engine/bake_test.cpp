@@ -134,16 +134,23 @@ TEST(Bake, BandsAddUpToTheWayFromTheSmoothBase) {
         way.maps.hasOtherMesh = true;
         way.maps.isVector = isVector;
         RunBake(spot, way, &base);
+        auto both = MakeOptions(folder / "both.{map}.exr", {"bands", "displacement"}, 64);
+        both.maps = way.maps;
+        both.maps.names = {"bands", "displacement"};
+        both.maps.numBands = 3;
+        RunBake(spot, both, &base);
         engine::ExrLookup lookup;
         std::vector<std::string> const axes = isVector ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"};
         double most = 0.0;
         for (int y = 0; y < 64; ++y) {
             for (int x = 0; x < 64; ++x) {
                 auto const expected = lookup.Look(folder / "way.exr", axes, x, y);
+                EXPECT_EQ(lookup.Look(folder / "both.displacement.exr", axes, x, y), expected);
                 for (size_t c = 0; c < axes.size(); ++c) {
                     std::vector<std::string> layers;
                     for (char const* part : {"band1", "band2", "remainder"}) layers.push_back(part + (isVector ? "." + axes[c] : ""));
                     auto const values = lookup.Look(folder / "bands.exr", layers, x, y);
+                    EXPECT_EQ(lookup.Look(folder / "both.bands.exr", layers, x, y), values);
                     ASSERT_NEAR(values[0] + values[1] + values[2], -expected[c], 1e-6) << x << " " << y;
                     most = std::max(most, std::abs(values[0]));
                 }
