@@ -52,12 +52,6 @@ std::string ReplaceUdim(std::string path, int tile) {
 
 }  // namespace
 
-double MeasureMeanEdge(Scene const& scene, Far::TopologyLevel const& level) {
-    double sum = 0.0;
-    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) sum += Length(scene, level, edge);
-    return sum / std::max(1, level.GetNumEdges());
-}
-
 FilterWidths FilterWidths::Constant(double width) {
     FilterWidths widths;
     widths._constant = widths._largest = width;

@@ -84,7 +84,4 @@ private:
     double _textureWidth = 0.0;
 };
 
-/// Mean length of a mesh's edges.
-double MeasureMeanEdge(Scene const& scene, Far::TopologyLevel const& level);
-
 }  // namespace limn::engine

@@ -69,16 +69,6 @@ std::unique_ptr<Far::TopologyRefiner> MakeUniformRefiner(Scene const& scene, int
     return refiner;
 }
 
-std::vector<Index> FindBaseFaces(Far::TopologyRefiner const& refiner, int level) {
-    std::vector<Index> base(static_cast<size_t>(refiner.GetLevel(level).GetNumFaces()));
-    for (Index face = 0; face < static_cast<Index>(base.size()); ++face) {
-        Index at = face;
-        for (int k = level; k > 0; --k) at = refiner.GetLevel(k).GetFaceParentFace(at);
-        base[face] = at;
-    }
-    return base;
-}
-
 void InheritGroups(Scene const& scene, std::vector<Index> const& baseFaces, Scene& fine) {
     for (size_t kind = 0; kind < 3; ++kind) {
         fine.groups[kind].names = scene.groups[kind].names;
@@ -94,7 +84,7 @@ Scene RefineAllButPositions(Scene const& scene, Far::TopologyRefiner const& refi
     fine.cage = far_ext::MakeRefinedCage(refiner, scene.cage);
     if (scene.HasUVs()) fine.uvs = RefineToLast<2>(refiner, scene.uvs, 0);
     for (Primvar const& primvar : scene.primvars) fine.primvars.push_back(RefinePrimvar(refiner, primvar));
-    InheritGroups(scene, FindBaseFaces(refiner, refiner.GetMaxLevel()), fine);
+    InheritGroups(scene, far_ext::FindBaseFaces(refiner, refiner.GetMaxLevel()), fine);
     return fine;
 }
 

@@ -26,9 +26,6 @@ Scene RefineUniformly(Scene const& scene, int levels, bool toLimit,
 /// \throws Error  as RefineUniformly
 std::unique_ptr<Far::TopologyRefiner> MakeUniformRefiner(Scene const& scene, int levels);
 
-/// The base face that each face of a level lies in.
-std::vector<Index> FindBaseFaces(Far::TopologyRefiner const& refiner, int level);
-
 /// Puts faces into the groups of the base faces they lie in.
 void InheritGroups(Scene const& scene, std::vector<Index> const& baseFaces, Scene& fine);
 

@@ -9,6 +9,8 @@
 #include "engine/smooth_checks.h"
 #include "eval/critical_width.h"
 #include "eval/enclosed_volume.h"
+#include "far_ext/error.h"
+#include "far_ext/laplacian.h"
 
 namespace limn::engine {
 
@@ -17,6 +19,7 @@ namespace {
 using far_ext::CascadeLevel;
 using far_ext::CascadeMesh;
 
+constexpr double kLargestWidth = 1e6;  // of the mesh's size: anything closed collapses long before, and squares must fit a float
 constexpr int kMaxIterations = 20000;  // of conjugate gradients on a level
 
 std::vector<double> Times(double factor, std::vector<double> values) {
@@ -85,9 +88,11 @@ public:
             Step(report);
             AdvanceTo(1.0);
             _shown = 0;
-            if (report.shrinkage.radiusRatio < eval::kLeastRadiusRatio && !_options.keepsResult) return {};
+            report.hasCollapsed |= report.shrinkage.radiusRatio < eval::kLeastRadiusRatio;
+            if (report.hasCollapsed && !_options.keepsResult) break;
         }
         _job.Finish();
+        if (report.hasCollapsed && !_options.keepsResult) return {};
         Scene fine = _levels.MakeScene();
         fine.positions = Times(_unit, _cascade.GetPositions());
         auto const widths = Times(_unit, _cascade.GetWidths());
@@ -177,10 +182,10 @@ private:
 
     void WatchRadii(SmoothReport& report) {
         auto const start = eval::FindMeanRadii(_start, _ofVertex, _components.count);
-        auto const present = eval::FindMeanRadii(Times(_unit, _cascade.GetPositions()), _ofVertex, _components.count);
+        auto const present = eval::FindMeanRadii(_cascade.GetPositions(), _ofVertex, _components.count);
         for (size_t component = 0; component < start.size(); ++component) {
             if (!_components.isClosed[component] || !(start[component] > 0.0)) continue;
-            double const ratio = present[component] / start[component];
+            double const ratio = _unit * present[component] / start[component];
             if (ratio < report.shrinkage.radiusRatio) report.shrinkage = {_components.firstVertex[component], _level, ratio};
         }
     }
@@ -232,7 +237,7 @@ double MeasureCriticalFactor(Scene const& scene, Far::TopologyLevel const& base,
 Scene RunOnce(Scene const& scene, Far::TopologyLevel const& base, FilterWidths const& widths, SmoothOptions const& options, bool isAgain, Job& job,
               SmoothReport& report) {
     report = {};
-    report.meanEdge = MeasureMeanEdge(scene, base);
+    report.meanEdge = far_ext::FindMeanEdgeLength(base, scene.positions);
     report.largestWidth = widths.GetLargest();
     bool const isSingle = options.isSingle && options.solver == eval::CascadeSolver::Jacobi;
     return isSingle ? SmoothRun<float>(scene, base, widths, options, isAgain, job).Run(report)
@@ -242,12 +247,16 @@ Scene RunOnce(Scene const& scene, Far::TopologyLevel const& base, FilterWidths c
 }  // namespace
 
 bool SmoothReport::HasConverged() const {
-    return !HasCollapsed() && std::all_of(levels.begin(), levels.end(), [](auto const& level) { return level.converged; });
+    return !hasCollapsed && std::all_of(levels.begin(), levels.end(), [](auto const& level) { return level.converged; });
 }
 
 Scene Smooth(Scene const& scene, Far::TopologyRefiner const& refiner, FilterWidths const& widths, SmoothOptions const& options, Job& job, SmoothReport& report) {
     auto const base = refiner.GetLevel(0);
-    RefuseDefects(scene, base);
+    RefuseDefects(scene, base, job);
+    if (double const unit = FindUnit(scene); widths.GetLargest() > kLargestWidth * unit) {
+        throw Error(ErrorCode::BadMesh, fmt::format("{}: a filter width of {:.4g} is more than {:.0e} times the mesh's size of about {:.4g}; give less", scene.path,
+                                                    widths.GetLargest(), kLargestWidth, unit));
+    }
     if (options.isGraph) RequireGraph(scene, base);
     Scene fine = RunOnce(scene, base, widths, options, false, job, report);
     // A sphere is at 0.72 of its radius where the width is 0.9 of the critical one. On a large mesh it costs too much to be sure.
@@ -255,19 +264,17 @@ Scene Smooth(Scene const& scene, Far::TopologyRefiner const& refiner, FilterWidt
     double const suspicious = 4.0 * base.GetNumVertices() <= kMaxVertices ? kSuspiciousRatio : eval::kLeastRadiusRatio;
     if (report.shrinkage.radiusRatio < suspicious) {
         double const factor = MeasureCriticalFactor(scene, base, widths, options);
-        report.criticalFactor = factor;
-        if (factor == 1.0 && fine.positions.empty()) report.criticalFactor = std::nextafter(1.0, 0.0);  // the grids disagree: it did collapse
-        if (report.HasCollapsed() && options.limitsWidth && factor > 0.0) {
+        report.hasCollapsed |= factor < 1.0;
+        if (report.hasCollapsed && options.limitsWidth && factor > 0.0) {
             Index const vertex = report.shrinkage.firstVertex;
             double const limit = 0.95 * factor;  // a fixed point near the critical width takes many levels
             fine = RunOnce(scene, base, widths.Scaled(limit), options, true, job, report);
             report.limitedBy = limit;
-            report.criticalFactor = factor / limit;
             job.Warn(fmt::format("{}: the width was reduced to {:.4g} of what was asked for; the component of vertex {} carries {:.4g}", scene.path, limit, vertex,
                                  factor));
-        } else if (report.HasCollapsed() && !options.keepsResult) {
-            fine = {};
         }
+        report.criticalFactor = factor;
+        if (report.hasCollapsed && !options.keepsResult) fine = {};
     }
     for (SmoothVolume const& volume : report.volumes) {
         if (!volume.isMet) {

@@ -49,9 +49,12 @@ struct SmoothReport {
     double largestWidth = 0.0;  ///< as used
     std::optional<double> limitedBy;  ///< factor on all widths that limitsWidth applied
     SmoothShrinkage shrinkage;
-    std::optional<double> criticalFactor;  ///< measured: the largest factor on all widths that the closed components carry
+    std::optional<double> criticalFactor;  ///< measured: the largest factor, at most 1, on the widths asked for that the closed components carry
+    bool hasCollapsed = false;  ///< a component fell below half of its radius, or carries less than the width used
     std::vector<SmoothVolume> volumes;
-    bool HasCollapsed() const { return criticalFactor && *criticalFactor < 1.0; }
+
+    /// criticalFactor as a width. \pre there is one
+    double GetCriticalWidth() const { return *criticalFactor * largestWidth / limitedBy.value_or(1.0); }
     bool HasConverged() const;  ///< and not collapsed
 };
 
@@ -67,7 +70,7 @@ struct SmoothReport {
 ///
 /// \param scene   of the scheme Loop where triangles are to stay triangles
 /// \param job     told of progress, and of a metric that was frozen, sharp corners, volumes that could not be kept
-/// \throws Error  BadMesh: not manifold or oriented two ways; for graphs, faces that overlap in the plane.  As SmoothLevels
+/// \throws Error  BadMesh: not manifold or oriented two ways; a width above 1e6 of the mesh's size; for graphs, faces that overlap in the plane.  As SmoothLevels
 /// Source  [Diewald02] Sec. 5 to 8; surface.md 3
 Scene Smooth(Scene const& scene, Far::TopologyRefiner const& refiner, FilterWidths const& widths, SmoothOptions const& options, Job& job,
              SmoothReport& report);

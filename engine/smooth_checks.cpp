@@ -39,11 +39,12 @@ SmoothComponents::SmoothComponents(Far::TopologyLevel const& level) {
     }
 }
 
-void RefuseDefects(Scene const& scene, Far::TopologyLevel const& level) {
+void RefuseDefects(Scene const& scene, Far::TopologyLevel const& level, Job& job) {
     for (Defect const& defect : FindDefects(scene, level)) {
         for (char const* kind : {"non_manifold_edge", "non_manifold_vertex", "winding", "not_orientable", "repeated_corner"}) {
             if (defect.kind == kind) throw Error(ErrorCode::BadMesh, fmt::format("{}: {}; a geometric filter needs a manifold, oriented one way", scene.path, defect.message));
         }
+        job.Warn(fmt::format("{}: {}", scene.path, defect.message));
     }
 }
 

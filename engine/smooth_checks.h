@@ -22,8 +22,10 @@ struct SmoothComponents {
     explicit SmoothComponents(Far::TopologyLevel const& level);
 };
 
+/// Warns of defects that do not matter here.
+///
 /// \throws Error  BadMesh: not manifold, or not oriented one way
-void RefuseDefects(Scene const& scene, Far::TopologyLevel const& level);
+void RefuseDefects(Scene const& scene, Far::TopologyLevel const& level, Job& job);
 
 /// Faces must lie side by side in the plane of x and y: all turn the same way, at each corner.
 ///

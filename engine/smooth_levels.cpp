@@ -9,6 +9,7 @@
 #include "engine/refine.h"
 #include "eval/refine_values.h"
 #include "far_ext/error.h"
+#include "far_ext/refined_cage.h"
 
 namespace limn::engine {
 
@@ -76,7 +77,7 @@ far_ext::CascadeMesh const& SmoothLevels::MakeNext() {
 
 std::vector<Index> SmoothLevels::FindBaseFaces() const {
     if (_bisection) return _bisection->GetBaseFaces();
-    return engine::FindBaseFaces(*_refiner, _level);
+    return far_ext::FindBaseFaces(*_refiner, _level);
 }
 
 std::vector<double> SmoothLevels::FindCornerUVs() {

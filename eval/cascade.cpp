@@ -191,8 +191,20 @@ void Cascade<Scalar>::Sweep(int iterations) {
         if (rows->size() != _x0.size()) *rows = CascadeRows<Scalar>(_x0.size());
         std::copy(_x0.begin() + level.numUnknowns, _x0.end(), rows->begin() + level.numUnknowns);
     }
-    SweepJacobi(level, _operator, *from, _x0, _next, _x, iterations);
-    if (iterations % 2 == 1) _x.swap(_next);
+    SweepInParts(*from, _x0, _next, _x, iterations);
+}
+
+/// From `from` to x, with `next` as the other buffer; so many at once that telling of them costs nothing.
+template <class Scalar>
+void Cascade<Scalar>::SweepInParts(CascadeRows<Scalar> const& from, CascadeRows<Scalar> const& x0, CascadeRows<Scalar>& next, CascadeRows<Scalar>& x,
+                                   int iterations) const {
+    constexpr int kPart = 64;
+    for (int done = 0; done < iterations; done += kPart) {
+        if (_options.progress) _options.progress(static_cast<double>(done) / iterations);
+        int const count = std::min(kPart, iterations - done);
+        SweepJacobi(*_level, _operator, done == 0 ? from : x, x0, next, x, count);
+        if (count % 2 == 1) x.swap(next);
+    }
 }
 
 template <class Scalar>
@@ -245,13 +257,10 @@ std::vector<double> Cascade<Scalar>::Filter(std::span<double const> values, int 
     CascadeRows<Scalar> y = y0;
     if (_options.solver == CascadeSolver::Jacobi) {
         CascadeRows<Scalar> next = y0;
-        for (int sweep = 0; sweep < iterations; ++sweep) {
-            SweepJacobi(*_level, _operator, y, y0, next);
-            y.swap(next);
-        }
+        SweepInParts(y0, y0, next, y, iterations);
     } else if constexpr (std::is_same_v<Scalar, double>) {
         if (_options.solver == CascadeSolver::Exact) SolveByCholesky(*_level, _operator, y0, y);
-        else SolveByConjugateGradients(*_level, _operator, y0, y, iterations, _options.tolerance);
+        else SolveByConjugateGradients(*_level, _operator, y0, y, iterations, _options.tolerance, _options.progress);
     }
     return GetPublic(y);
 }

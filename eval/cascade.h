@@ -13,11 +13,10 @@ enum class CascadeSolver { Exact, ConjugateGradients, Jacobi };
 
 struct CascadeOptions {
     CascadeSolver solver = CascadeSolver::ConjugateGradients;
-    int iterations = 100000;  ///< of a step, at most; Jacobi does all of them
     double tolerance = 0.0;   ///< of the residual, where conjugate gradients stop
     double width = -1.0;      ///< sigma of all rows; negative: that of each vertex, solved along with the positions
     bool isGraph = false;     ///< filters heights z over the plane: its metric, x and y stay
-    std::function<void(double)> progress{};  ///< of conjugate gradients: called between iterations with the share of a step that is done; may throw
+    std::function<void(double)> progress{};  ///< called now and then, but for Exact, with the share of a solve that is done; may throw
     bool measuresResidual = true;  ///< of Jacobi sweeps, at the cost of about one
 };
 
@@ -79,6 +78,7 @@ public:
 private:
     CascadeStepReport Solve(int iterations);
     void Sweep(int iterations);
+    void SweepInParts(CascadeRows<Scalar> const& from, CascadeRows<Scalar> const& x0, CascadeRows<Scalar>& next, CascadeRows<Scalar>& x, int iterations) const;
     std::vector<double> GetPublic(CascadeRows<Scalar> const& rows) const;
     CascadeRows<Scalar> MakeRows(std::span<double const> values) const;
     bool IsDegenerate(MetricQuality const& quality) const;

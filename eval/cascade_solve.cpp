@@ -15,9 +15,12 @@ namespace {
 using far_ext::CascadeLevel;
 using Operator = CascadeOperator<double>;
 
+constexpr double kNothing = 1e-290;        // squares below it have lost their digits
+constexpr double kLeastResidual = 1e-16;   // what steps change below it is rounding
+
 /// a / b per coordinate; 0 where there is nothing left to divide by.
 DoubleLanes Divide(DoubleLanes const& a, DoubleLanes const& b) {
-    return (b > 0.0).select(a / (b > 0.0).select(b, 1.0), 0.0);
+    return (b > kNothing).select(a / (b > kNothing).select(b, 1.0), 0.0);
 }
 
 /// Size of a residual to that of the data, from sums of squares per coordinate.
@@ -61,7 +64,7 @@ public:
         while (true) {
             result.residual = FindRelativeSize(squares, data);
             result.converged = result.residual <= tolerance;
-            if (result.converged || result.iterations >= maxIterations) return result;
+            if (result.converged || result.iterations >= maxIterations || result.residual < kLeastResidual) return result;
             if (result.iterations == 0) first = result.residual;
             if (progress) {
                 double const byCount = static_cast<double>(result.iterations) / maxIterations;

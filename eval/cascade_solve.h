@@ -22,7 +22,7 @@ double MeasureResidual(far_ext::CascadeLevel const& level, CascadeOperator<Scala
 /// rows see them as given.
 ///
 /// \param tolerance      of the residual. Above 0 the diagonal is the preconditioner; at 0 all iterations are done without
-///                       one, as the a-priori counts of [Diewald02] are meant
+///                       one, as the a-priori counts of [Diewald02] are meant, unless only rounding is left
 /// \param x              what to start from, and the result
 /// \param maxIterations  of each kind of rows
 /// \param progress       called between iterations with the share done, as far as one can tell; may throw

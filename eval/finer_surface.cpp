@@ -1,6 +1,7 @@
 #include "eval/finer_surface.h"
 
 #include "eval/surface_sample.h"
+#include "far_ext/refined_cage.h"
 #include "far_ext/refiner.h"
 
 namespace limn::eval {
@@ -39,10 +40,9 @@ std::optional<FinerSurface> FinerSurface::Build(LimitSurface const& base, far_ex
     surface._positions.assign(positions.begin(), positions.end());
     surface._refiner = far_ext::CreateRefiner(finer);
     surface._limit = std::make_unique<LimitSurface>(*surface._refiner);
+    auto const baseFaces = far_ext::FindBaseFaces(*refined, levels);
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        Index parent = face;
-        for (int k = levels; k > 0; --k) parent = refined->GetLevel(k).GetFaceParentFace(parent);
-        if (base.HasLimit(parent) && !surface._limit->HasLimit(face)) return {};
+        if (base.HasLimit(baseFaces[face]) && !surface._limit->HasLimit(face)) return {};
     }
     return surface;
 }

@@ -112,16 +112,6 @@ std::vector<double> MeasureCotangents(Level const& level, std::span<double const
     return weights;
 }
 
-double FindMeanEdgeLength(Level const& level, std::span<double const> positions) {
-    double sum = 0.0;
-    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
-        auto const ends = level.GetEdgeVertices(edge);
-        Point const side = Between(PointOf(positions, ends[0]), PointOf(positions, ends[1]));
-        sum += std::sqrt(Dot(side, side));
-    }
-    return sum / std::max(1, level.GetNumEdges());
-}
-
 /// Positions as nanoflann reads them.
 struct PointCloud {
     std::span<double const> positions;
@@ -134,6 +124,16 @@ struct PointCloud {
 };
 
 }  // namespace
+
+double FindMeanEdgeLength(Level const& level, std::span<double const> positions) {
+    double sum = 0.0;
+    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+        auto const ends = level.GetEdgeVertices(edge);
+        Point const side = Between(PointOf(positions, ends[0]), PointOf(positions, ends[1]));
+        sum += std::sqrt(Dot(side, side));
+    }
+    return sum / std::max(1, level.GetNumEdges());
+}
 
 void CheckBoundary(Level const& level) {
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {

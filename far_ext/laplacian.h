@@ -25,6 +25,9 @@ inline Index GetOtherEnd(Far::TopologyLevel const& level, Index edge, Index vert
     return ends[0] == vertex ? ends[1] : ends[0];
 }
 
+/// Mean length of the edges; 0 without any.
+double FindMeanEdgeLength(Far::TopologyLevel const& level, std::span<double const> positions);
+
 /// \throws Error  BadMesh: a vertex with other than 0 or 2 boundary edges, so that boundary curves meet there
 void CheckBoundary(Far::TopologyLevel const& level);
 

@@ -56,4 +56,14 @@ ControlMesh MakeRefinedCage(Far::TopologyRefiner const& refiner, ControlMesh con
     return cage;
 }
 
+std::vector<Index> FindBaseFaces(Far::TopologyRefiner const& refiner, int level) {
+    std::vector<Index> base(static_cast<size_t>(refiner.GetLevel(level).GetNumFaces()));
+    for (Index face = 0; face < static_cast<Index>(base.size()); ++face) {
+        Index at = face;
+        for (int k = level; k > 0; --k) at = refiner.GetLevel(k).GetFaceParentFace(at);
+        base[face] = at;
+    }
+    return base;
+}
+
 }  // namespace limn::far_ext

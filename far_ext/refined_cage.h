@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "far_ext/control_mesh.h"
 #include "far_ext/types.h"
 
@@ -13,5 +15,8 @@ namespace limn::far_ext {
 /// \param refiner  uniformly refined, with the last level's full topology
 /// \param base     the cage the refiner was made from: gives scheme and options
 ControlMesh MakeRefinedCage(Far::TopologyRefiner const& refiner, ControlMesh const& base);
+
+/// The base face that each face of a level of a uniform refinement lies in.
+std::vector<Index> FindBaseFaces(Far::TopologyRefiner const& refiner, int level);
 
 }  // namespace limn::far_ext

@@ -10,6 +10,7 @@
 #include "engine/options_text.h"
 #include "engine/smooth.h"
 #include "far_ext/error.h"
+#include "far_ext/laplacian.h"
 
 namespace limn::cli {
 
@@ -73,7 +74,7 @@ engine::SmoothOptions MakeOptions(Arguments const& a, bool isDouble) {
 }
 
 engine::FilterWidths MakeWidths(Arguments const& a, CLI::App const& verb, engine::Scene const& scene, Far::TopologyLevel const& level) {
-    double const width = verb.count("--width") ? a.width : a.widthFactor * engine::MeasureMeanEdge(scene, level);
+    double const width = verb.count("--width") ? a.width : a.widthFactor * far_ext::FindMeanEdgeLength(level, scene.positions);
     if (a.isLocal) return engine::FilterWidths::LocalEdgeLengths(scene, level, a.widthScale);
     if (!a.widthMap.empty()) return engine::FilterWidths::ReadMap(a.widthMap, scene);
     if (!a.widthEdges.empty()) return engine::FilterWidths::ReadEdges(a.widthEdges, scene, level);
@@ -110,7 +111,7 @@ void AddToReport(nlohmann::json& report, engine::SmoothReport const& found) {
     }
     if (found.criticalFactor) {
         report["critical_factor"] = *found.criticalFactor;
-        report["critical_width"] = *found.criticalFactor * found.largestWidth;
+        report["critical_width"] = found.GetCriticalWidth();
     }
     for (auto const& volume : found.volumes) {
         report["volumes"].push_back({{"first_vertex", volume.firstVertex}, {"start", volume.start}, {"end", volume.end}, {"kept", volume.isMet}});
@@ -119,11 +120,11 @@ void AddToReport(nlohmann::json& report, engine::SmoothReport const& found) {
 
 /// What went wrong, and what helps, in one line.
 std::string Explain(std::string const& path, engine::SmoothReport const& found) {
-    if (found.HasCollapsed()) {
+    if (found.hasCollapsed) {
         auto const& [vertex, level, ratio] = found.shrinkage;
-        return fmt::format("{}: a filter of width {:.4g} collapses the component of vertex {} (mean radius {:.2g} of its own on level {}); it carries {:.4g} of that, "
-                           "a width of {:.4g}. Use less, --limit-width or --preserve-volume",
-                           path, found.largestWidth, vertex, ratio, level, *found.criticalFactor, *found.criticalFactor * found.largestWidth);
+        return fmt::format("{}: a filter of width {:.4g} collapses the component of vertex {} (mean radius {:.2g} of its own on level {}); measured on a coarser mesh it "
+                           "carries {:.4g}. Use less, --limit-width or --preserve-volume",
+                           path, found.largestWidth, vertex, ratio, level, found.GetCriticalWidth());
     }
     auto const& missed = *std::find_if(found.levels.begin(), found.levels.end(), [](auto const& level) { return !level.converged; });
     return fmt::format("{}: on level {} the residual is {:.2g} after {} iterations; use a larger --tolerance or --solver exact", path,
@@ -132,7 +133,7 @@ std::string Explain(std::string const& path, engine::SmoothReport const& found) 
 
 int Run(Arguments const& a, CLI::App const& verb, Context& context) {
     CheckOptions(a, verb);
-    auto [scene, refiner] = context.Load(a.mesh);
+    auto [scene, refiner] = context.Load(a.mesh, Context::Defects::Keep);  // engine::Smooth warns of them, or refuses
     ChooseScheme(context.GetCommon(), a.refinement == "bisect", scene.cage);
     far_ext::Validate(scene.cage);
     context.GetReport()["inputs"].back()["subdivision"] = engine::DescribeSubdivision(scene.cage);

@@ -1,5 +1,6 @@
 // limn smooth from outside, and the bakes of what it makes.
 
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 
@@ -517,6 +518,7 @@ TEST_F(CliSmooth, WhatIsWrongIsNamed) {
              Wrong{{"--width", "1", "--width-factor", "1"}, 2, "--width and --width-factor exclude"},
              Wrong{{"--width", "-1"}, 2, "--width"},
              Wrong{{"--width", "nan"}, 2, "--width"},
+             Wrong{{"--width", "1e300"}, 3, "times the mesh's size"},
              Wrong{{"--width-scale", "1"}, 2, "--width-scale needs --local"},
              Wrong{{"--local", "--width", "1"}, 2, "exclude"},
              Wrong{{"--solver", "exact", "--sweeps", "1"}, 2, "--sweeps means nothing"},
@@ -540,6 +542,19 @@ TEST_F(CliSmooth, WhatIsWrongIsNamed) {
     EXPECT_TRUE(Contains(ExpectError(Limn({"smooth", icosa, "-o", folder / "x.obj", "--width-texture", folder / "w.png"}), 3), "no texture coordinates"));
     EXPECT_TRUE(Contains(ExpectError(Limn({"smooth", bowtie, "-o", folder / "x.obj"}), 3), "manifold"));
     EXPECT_TRUE(Contains(ExpectError(Limn({"smooth", cube, "-o", folder / "x.stl"}), 2), ".stl"));
+}
+
+// Sweeps and iterations by the million stop between two of them.
+TEST_F(CliSmooth, StopsWhenInterrupted) {
+    for (Words const& options : {Words{"--solver", "jacobi", "--iterations", "1000000"}, Words{"--tolerance", "1e-14"}}) {
+        test::Process process(Words{LIMN_PROGRAM, "smooth", spot, "-o", folder / "x.ply", "--levels", "8"} + options);
+        ::sleep(1);
+        process.Send(SIGINT);
+        auto const start = std::chrono::steady_clock::now();
+        EXPECT_EQ(process.Wait().status, 130);
+        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+        EXPECT_FALSE(std::filesystem::exists(folder / "x.ply"));
+    }
 }
 
 TEST_F(CliSmooth, TheHelpsExampleRuns) {

@@ -138,7 +138,7 @@ TEST(Cascade, TheOperatorIsAssembledFromTriangles) {
         auto const mesh = far_ext::MakeCascadeMesh(*refiner, 1);
         auto const level = far_ext::BuildCascadeLevel(mesh, {}, BoundaryRule::Fixed);
         double const sigma = 0.3, a = sigma * sigma / 2;
-        eval::Cascade<double> cascade(scene.positions, {}, {.iterations = 0, .width = sigma});
+        eval::Cascade<double> cascade(scene.positions, {}, {.width = sigma});
         cascade.Step(level, 0);
         auto const points = cascade.GetStartPositions();
         Eigen::MatrixXd L = Eigen::MatrixXd::Zero(mesh.numVertices, mesh.numVertices);
@@ -205,6 +205,20 @@ TEST(Cascade, ASweepIsItsStencilTable) {
     }
 }
 
+// Iterations by count go on after nothing is left to gain; numbers stay numbers, and stay where they were.
+TEST(Cascade, MoreIterationsThanThereAreUnknownsDoNoHarm) {
+    auto const scene = LoadMesh("icosa");
+    auto const levels = QuarterLevels(scene, 2, BoundaryRule::Fixed);
+    double const width = 0.2 * MeasureEdges(scene).mean;
+    auto const run = [&](CascadeOptions const& options, int iterations) {
+        eval::Cascade<double> cascade(scene.positions, {}, options);
+        for (auto const& level : levels) cascade.Step(level, iterations);
+        return cascade.GetPositions();
+    };
+    auto const exact = run({.solver = CascadeSolver::Exact, .width = width}, 1);
+    for (int iterations : {100, 5000, 20000}) EXPECT_LT(test::LargestDifference(run({.width = width}, iterations), exact), 1e-12) << iterations;
+}
+
 // Where sigma is 0 on a triangle nothing moves, to the bit, and NaN comes from nowhere.
 TEST(Cascade, WithoutWidthNothingMoves) {
     auto const scene = LoadMesh("torustri");
@@ -212,7 +226,7 @@ TEST(Cascade, WithoutWidthNothingMoves) {
     auto const levels = QuarterLevels(scene, 2, BoundaryRule::Fixed);
     widths[0] = 0.1;
     for (auto solver : {CascadeSolver::Exact, CascadeSolver::ConjugateGradients, CascadeSolver::Jacobi}) {
-        eval::Cascade<double> cascade(scene.positions, widths, {.solver = solver, .iterations = 20, .width = -1.0});
+        eval::Cascade<double> cascade(scene.positions, widths, {.solver = solver, .width = -1.0});
         for (auto const& level : levels) cascade.Step(level, 20);
         auto const points = cascade.GetPositions(), start = cascade.GetStartPositions(), found = cascade.GetWidths();
         std::vector<double> nearby = found;  // the largest in the ring
