@@ -67,33 +67,6 @@ void Join(SolveReport& report, SolveReport const& block) {
     }
 }
 
-}  // namespace
-
-char const* GetName(SolveMethod method) {
-    constexpr char const* kNames[] = {"auto", "progressive", "weighted", "chebyshev", "cg", "direct"};
-    return kNames[static_cast<int>(method)];
-}
-
-double FindSize(std::span<double const> values, int length) {
-    if (values.empty()) return 1.0;
-    size_t const n = static_cast<size_t>(length);
-    std::vector<double> low(values.begin(), values.begin() + length), high(low);
-    for (size_t i = n; i < values.size(); i += n) {
-        for (size_t c = 0; c < n; ++c) {
-            low[c] = std::min(low[c], values[i + c]);
-            high[c] = std::max(high[c], values[i + c]);
-        }
-    }
-    double square = 0.0;
-    for (size_t c = 0; c < n; ++c) square += (high[c] - low[c]) * (high[c] - low[c]);
-    return square > 0.0 ? std::sqrt(square) : 1.0;
-}
-
-Interpolator::Interpolator(Far::TopologyRefiner const& refiner, int level, far_ext::LimitOptions const& options)
-    : _A(LimitOperator::Build(refiner, level, options).Reorder(_vertices)), _singular(_A) {}
-
-namespace {
-
 /// Channels `first` to `first` + count of rows of `length`, 1 to 4 of them: rows[i] = values[vertices[i]].
 void Gather(std::span<double const> values, int length, int first, int count, std::vector<Index> const& vertices, std::span<double> rows) {
     WithLength(count, [&]<int Count>() {
@@ -126,6 +99,29 @@ void ForEachBlockOfChannels(int length, Work const& work) {
 }
 
 }  // namespace
+
+char const* GetName(SolveMethod method) {
+    constexpr char const* kNames[] = {"auto", "progressive", "weighted", "chebyshev", "cg", "direct"};
+    return kNames[static_cast<int>(method)];
+}
+
+double FindSize(std::span<double const> values, int length) {
+    if (values.empty()) return 1.0;
+    size_t const n = static_cast<size_t>(length);
+    std::vector<double> low(values.begin(), values.begin() + length), high(low);
+    for (size_t i = n; i < values.size(); i += n) {
+        for (size_t c = 0; c < n; ++c) {
+            low[c] = std::min(low[c], values[i + c]);
+            high[c] = std::max(high[c], values[i + c]);
+        }
+    }
+    double square = 0.0;
+    for (size_t c = 0; c < n; ++c) square += (high[c] - low[c]) * (high[c] - low[c]);
+    return square > 0.0 ? std::sqrt(square) : 1.0;
+}
+
+Interpolator::Interpolator(Far::TopologyRefiner const& refiner, int level, far_ext::LimitOptions const& options)
+    : _A(LimitOperator::Build(refiner, level, options).Reorder(_vertices)), _singular(_A) {}
 
 std::vector<double> Interpolator::FindLimits(std::span<double const> values, int length) const {
     std::vector<double> result(values.size());
