@@ -8,7 +8,7 @@
 
 #include "engine/bake/bake.h"
 #include "engine/io/mesh_reader.h"
-#include "far_ext/refiner.h"
+#include "far_ext/topology/refiner.h"
 #include "harness.h"
 #include "support/files.h"
 #include "peers/maketx.h"

@@ -1,9 +1,9 @@
 // The cascadic geometric filter: a level against sparse matrices, its sweep against a stencil table in OpenSubdiv's
 // evaluator and against the memory, the whole cascade against its finest level, and growth.
 
-#include "eval/cascade.h"
+#include "eval/cascade/cascade.h"
 
-#include "far_ext/cascade_stencils.h"
+#include "far_ext/cascade/cascade_stencils.h"
 #include "harness.h"
 #include "peers/eigen_cascade.h"
 #include "peers/osd_stencils.h"

@@ -1,11 +1,11 @@
 // Reconstruction from differential coordinates: how iterations, time and memory grow, and how it compares with a
 // sparse factorisation and with algebraic multigrid. Set-up and solve, 3 right-hand sides, residual 1e-8, from zero.
 
-#include "engine/differential.h"
-#include "engine/refine.h"
-#include "eval/reconstruct.h"
-#include "eval/subdivide_values.h"
-#include "far_ext/laplacian.h"
+#include "engine/differential/differential.h"
+#include "engine/scene/refine.h"
+#include "eval/differential/reconstruct.h"
+#include "eval/differential/subdivide_values.h"
+#include "far_ext/differential/laplacian.h"
 #include "harness.h"
 #include "support/refined.h"
 #ifdef LIMN_HAS_CHOLMOD

@@ -1,8 +1,8 @@
 // Design of tangent fields on control meshes, which have no hierarchy: sources and vortices from nothing, and again for
 // other strengths, next to other factorisations of the same equations.
 
-#include "eval/field_designer.h"
-#include "far_ext/refiner.h"
+#include "eval/forms/field_designer.h"
+#include "far_ext/topology/refiner.h"
 #include "harness.h"
 #include "support/meshes.h"
 

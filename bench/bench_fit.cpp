@@ -4,9 +4,9 @@
 #include <opensubdiv/far/ptexIndices.h>
 #include <opensubdiv/far/stencilTableFactory.h>
 
-#include "eval/interpolate.h"
-#include "far_ext/limit_matrix.h"
-#include "far_ext/refiner.h"
+#include "eval/fit/interpolate.h"
+#include "far_ext/limit/limit_matrix.h"
+#include "far_ext/topology/refiner.h"
 #include "harness.h"
 #include "heap_peak.h"
 #include "peers/osd_progressive.h"

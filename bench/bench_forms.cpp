@@ -3,10 +3,10 @@
 
 #include <opensubdiv/osd/cpuEvaluator.h>
 
-#include "eval/simd_evaluator.h"
-#include "far_ext/form_operators.h"
-#include "far_ext/form_stencils.h"
-#include "far_ext/refiner.h"
+#include "eval/stencils/simd_evaluator.h"
+#include "far_ext/forms/form_operators.h"
+#include "far_ext/forms/form_stencils.h"
+#include "far_ext/topology/refiner.h"
 #include "harness.h"
 #include "support/meshes.h"
 #include "support/stencils.h"

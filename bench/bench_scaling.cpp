@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "engine/bake/bake.h"
-#include "eval/surface_sampler.h"
-#include "far_ext/refiner.h"
+#include "eval/surface/surface_sampler.h"
+#include "far_ext/topology/refiner.h"
 #include "harness.h"
 #include "support/files.h"
 #include "support/meshes.h"

@@ -4,10 +4,10 @@
 
 #include <random>
 
-#include "eval/instruction_set.h"
-#include "eval/simd_evaluator.h"
-#include "far_ext/refined_stencils.h"
-#include "far_ext/refiner.h"
+#include "eval/kernels/instruction_set.h"
+#include "eval/stencils/simd_evaluator.h"
+#include "far_ext/stencils/refined_stencils.h"
+#include "far_ext/topology/refiner.h"
 #include "harness.h"
 #include "meshes.h"
 #include "peers/csr_rows.h"

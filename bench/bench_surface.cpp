@@ -4,9 +4,9 @@
 #include <array>
 #include <random>
 
-#include "eval/instruction_set.h"
-#include "eval/patch_polynomial.h"
-#include "eval/surface_sampler.h"
+#include "eval/kernels/instruction_set.h"
+#include "eval/surface/patch_polynomial.h"
+#include "eval/surface/surface_sampler.h"
 #include "harness.h"
 #include "meshes.h"
 #include "peers/bfr_surfaces.h"

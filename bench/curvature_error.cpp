@@ -9,8 +9,8 @@
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
 #include <opensubdiv/bfr/surface.h>
 
-#include "eval/surface_sampler.h"
-#include "far_ext/refiner.h"
+#include "eval/surface/surface_sampler.h"
+#include "far_ext/topology/refiner.h"
 #include "support/meshes.h"
 
 namespace {

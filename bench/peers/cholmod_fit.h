@@ -4,7 +4,7 @@
 
 #include <cholmod.h>
 
-#include "far_ext/limit_matrix.h"
+#include "far_ext/limit/limit_matrix.h"
 
 namespace limn::bench {
 

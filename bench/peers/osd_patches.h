@@ -10,8 +10,8 @@
 #include <opensubdiv/osd/cpuEvaluator.h>
 #include <opensubdiv/osd/cpuPatchTable.h>
 
-#include "far_ext/control_mesh.h"
-#include "far_ext/refiner.h"
+#include "far_ext/topology/control_mesh.h"
+#include "far_ext/topology/refiner.h"
 
 namespace limn::bench {
 

@@ -5,7 +5,7 @@
 
 #include <opensubdiv/osd/cpuEvaluator.h>
 
-#include "far_ext/limit_matrix.h"
+#include "far_ext/limit/limit_matrix.h"
 
 namespace limn::bench {
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/SparseCore>
 
-#include "eval/multigrid_levels.h"
+#include "eval/differential/multigrid_levels.h"
 
 namespace limn::bench {
 

@@ -15,8 +15,8 @@
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
-#include "engine/bake/band_baker.h"
-#include "engine/bake/band_packer.h"
+#include "engine/bake/strip_baker.h"
+#include "engine/bake/strip_packer.h"
 #include "engine/bake/layout.h"
 #include "engine/bake/preview.h"
 #include "far_ext/error.h"

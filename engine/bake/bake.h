@@ -7,11 +7,11 @@
 
 #include <opensubdiv/far/topologyRefiner.h>
 
-#include "engine/bake/exr_writer.h"
-#include "engine/bake/maps.h"
-#include "engine/job.h"
+#include "engine/images/exr_writer.h"
+#include "engine/bake/maps/maps.h"
+#include "engine/scene/job.h"
 #include "engine/noise/surface_noise.h"
-#include "engine/scene.h"
+#include "engine/scene/scene.h"
 
 namespace limn::engine {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "engine/bake/pixel_kernel.h"
+#include "engine/images/pixel_kernel.h"
 
 namespace limn::engine {
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "engine/options_text.h"
+#include "engine/scene/subdivision_names.h"
 
 namespace limn::engine {
 

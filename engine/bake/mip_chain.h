@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/bake/maps.h"
+#include "engine/bake/maps/maps.h"
 
 namespace limn::engine {
 

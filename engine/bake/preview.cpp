@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/bake/line_convolution.h"
+#include "engine/images/line_convolution.h"
 #include "engine/images/images_module.h"
 #include "engine/io/file.h"
 #include "far_ext/error.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/bake/maps.h"
+#include "engine/bake/maps/maps.h"
 #include "engine/bake/mip_chain.h"
 
 namespace limn::engine {

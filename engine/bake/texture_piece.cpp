@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "eval/patch_polynomial.h"
+#include "eval/surface/patch_polynomial.h"
 
 namespace limn::engine {
 

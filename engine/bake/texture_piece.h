@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "far_ext/ring_subdivision.h"
+#include "far_ext/rings/ring_subdivision.h"
 
 namespace limn::engine {
 

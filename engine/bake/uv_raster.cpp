@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "engine/bake/texture_cell.h"
-#include "eval/patch_polynomial.h"
-#include "eval/surface_sample.h"
+#include "eval/surface/patch_polynomial.h"
+#include "eval/surface/surface_sample.h"
 
 namespace limn::engine {
 

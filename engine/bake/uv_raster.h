@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "engine/bake/texture_piece.h"
-#include "engine/uninitialized.h"
-#include "eval/inversion_kernel.h"
-#include "eval/limit_surface.h"
+#include "engine/bake/uninitialized.h"
+#include "eval/surface/inversion_kernel.h"
+#include "eval/surface/limit_surface.h"
 
 namespace limn::engine {
 

@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/io/file.h"
-#include "engine/job.h"
-#include "engine/scene.h"
-#include "far_ext/refiner.h"
+#include "engine/scene/job.h"
+#include "engine/scene/scene.h"
+#include "far_ext/topology/refiner.h"
 
 namespace limn::cli {
 

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include "engine/bake/audit.h"
+#include "engine/bake/audit/audit.h"
 #include "engine/bake/bake.h"
 #include "engine/cli/cli.h"
 #include "engine/cli/parse_number.h"
 #include "engine/io/edge_values.h"
-#include "engine/options_text.h"
+#include "engine/scene/subdivision_names.h"
 #include "far_ext/error.h"
 
 namespace limn::cli {

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
-#include "engine/evaluate.h"
-#include "engine/frames.h"
+#include "engine/evaluate/evaluate.h"
+#include "engine/evaluate/frames.h"
 #include "engine/io/file.h"
 
 namespace limn::cli {

@@ -4,13 +4,13 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/parse_number.h"
-#include "engine/field.h"
+#include "engine/field/field.h"
 #include "engine/io/edge_values.h"
 #include "engine/io/mesh_writer.h"
 #include "engine/io/number_table.h"
-#include "engine/mesh_picture.h"
+#include "engine/measure/mesh_picture.h"
 #include "far_ext/error.h"
-#include "far_ext/form_operators.h"
+#include "far_ext/forms/form_operators.h"
 
 namespace limn::cli {
 

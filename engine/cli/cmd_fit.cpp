@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
-#include "engine/fit.h"
+#include "engine/fit/fit.h"
 #include "engine/io/mesh_writer.h"
-#include "engine/refine.h"
+#include "engine/scene/refine.h"
 #include "far_ext/error.h"
 
 namespace limn::cli {

@@ -2,8 +2,8 @@
 #include <fmt/ranges.h>
 
 #include "engine/cli/cli.h"
-#include "engine/mesh_info.h"
-#include "engine/options_text.h"
+#include "engine/scene/mesh_info.h"
+#include "engine/scene/subdivision_names.h"
 
 namespace limn::cli {
 

@@ -2,8 +2,8 @@
 
 #include "engine/cli/cli.h"
 #include "engine/io/mesh_writer.h"
-#include "engine/measure.h"
-#include "engine/mesh_picture.h"
+#include "engine/measure/measure.h"
+#include "engine/measure/mesh_picture.h"
 #include "far_ext/error.h"
 
 namespace limn::cli {

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
-#include "engine/differential.h"
-#include "engine/io/edit_reader.h"
+#include "engine/differential/differential.h"
+#include "engine/differential/edit_reader.h"
 #include "engine/io/mesh_writer.h"
-#include "engine/io/polyline_file.h"
-#include "engine/options_text.h"
-#include "engine/refine.h"
+#include "engine/differential/polyline_file.h"
+#include "engine/scene/subdivision_names.h"
+#include "engine/scene/refine.h"
 #include "far_ext/error.h"
 
 namespace limn::cli {

@@ -6,11 +6,11 @@
 
 #include "engine/cli/cli.h"
 #include "engine/io/mesh_writer.h"
-#include "engine/mesh_picture.h"
-#include "engine/options_text.h"
-#include "engine/smooth.h"
+#include "engine/measure/mesh_picture.h"
+#include "engine/scene/subdivision_names.h"
+#include "engine/smooth/smooth.h"
 #include "far_ext/error.h"
-#include "far_ext/laplacian.h"
+#include "far_ext/differential/laplacian.h"
 
 namespace limn::cli {
 

@@ -7,8 +7,8 @@
 #include "engine/cli/cli.h"
 #include "engine/io/file.h"
 #include "engine/io/mesh_reader.h"
-#include "engine/mesh_info.h"
-#include "engine/options_text.h"
+#include "engine/scene/mesh_info.h"
+#include "engine/scene/subdivision_names.h"
 #include "far_ext/error.h"
 
 namespace limn::cli {

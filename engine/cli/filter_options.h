@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/bands.h"
+#include "engine/fit/bands.h"
 #include "engine/cli/cli.h"
 
 namespace limn::cli {

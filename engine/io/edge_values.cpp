@@ -7,7 +7,7 @@
 
 #include "engine/io/number_table.h"
 #include "far_ext/error.h"
-#include "far_ext/form_operators.h"
+#include "far_ext/forms/form_operators.h"
 
 namespace limn::engine {
 

@@ -24,7 +24,7 @@ std::vector<EdgeValue> ReadEdgeTable(std::string const& path, char const* column
 
 /// A 1-form from a table `v0,v1,value`: what a field does along the edges from v0 to v1; 0 on edges that are not listed.
 ///
-/// \return per edge of the level, in the direction of far_ext/form_operators.h
+/// \return per edge of the level, in the direction of far_ext/forms/form_operators.h
 /// \throws Error  as above
 std::vector<double> ReadEdgeValues(std::string const& path, Far::TopologyLevel const& level);
 

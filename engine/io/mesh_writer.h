@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/io/file.h"
-#include "engine/scene.h"
+#include "engine/scene/scene.h"
 
 namespace limn::engine {
 

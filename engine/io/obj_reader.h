@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "engine/scene.h"
+#include "engine/scene/scene.h"
 
 namespace limn::engine {
 

@@ -7,14 +7,14 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "engine/job.h"
+#include "engine/scene/job.h"
 #include "engine/noise/gradient_noise.h"
-#include "eval/interpolate.h"
-#include "eval/refine_values.h"
-#include "eval/surface_sample.h"
+#include "eval/fit/interpolate.h"
+#include "eval/differential/refine_values.h"
+#include "eval/surface/surface_sample.h"
 #include "far_ext/error.h"
-#include "far_ext/refined_cage.h"
-#include "far_ext/refiner.h"
+#include "far_ext/topology/refined_cage.h"
+#include "far_ext/topology/refiner.h"
 
 namespace limn::engine {
 

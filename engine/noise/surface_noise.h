@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "engine/scene.h"
-#include "eval/limit_surface.h"
-#include "eval/refined_faces.h"
+#include "engine/scene/scene.h"
+#include "eval/surface/limit_surface.h"
+#include "eval/surface/refined_faces.h"
 
 namespace limn::engine {
 

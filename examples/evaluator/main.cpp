@@ -13,9 +13,9 @@
 #include <opensubdiv/osd/cpuEvaluator.h>
 #include <opensubdiv/osd/cpuVertexBuffer.h>
 
-#include <limn/eval/simd_evaluator.h>
+#include <limn/eval/stencils/simd_evaluator.h>
 #include <limn/far_ext/error.h>
-#include <limn/far_ext/refined_stencils.h>
+#include <limn/far_ext/stencils/refined_stencils.h>
 
 namespace Far = OpenSubdiv::Far;
 namespace Osd = OpenSubdiv::Osd;

@@ -1,8 +1,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include <limn/eval/surface_sample.h>
-#include <limn/far_ext/refiner.h>
+#include <limn/eval/surface/surface_sample.h>
+#include <limn/far_ext/topology/refiner.h>
 
 // The limit of a cube's corner: own weight 9/24, three edge ends 4/24 each, three face opposites 1/24 each.
 int main() {

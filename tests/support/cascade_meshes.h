@@ -10,9 +10,9 @@
 
 #include <Eigen/Geometry>
 
-#include "eval/cascade.h"
-#include "far_ext/bisection.h"
-#include "far_ext/cascade_level.h"
+#include "eval/cascade/cascade.h"
+#include "far_ext/cascade/bisection.h"
+#include "far_ext/cascade/cascade_level.h"
 #include "support/refined.h"
 
 namespace limn::test {

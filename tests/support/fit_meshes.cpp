@@ -3,8 +3,8 @@
 #include <cmath>
 #include <random>
 
-#include "engine/refine.h"
-#include "far_ext/refiner.h"
+#include "engine/scene/refine.h"
+#include "far_ext/topology/refiner.h"
 #include "support/meshes.h"
 
 namespace limn::test {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/scene.h"
+#include "engine/scene/scene.h"
 
 namespace limn::test {
 

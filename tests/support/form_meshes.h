@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/scene.h"
+#include "engine/scene/scene.h"
 
 namespace limn::test {
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "engine/scene.h"
+#include "engine/scene/scene.h"
 
 namespace limn::test {
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene.h"
-#include "eval/refine_values.h"
+#include "engine/scene/scene.h"
+#include "eval/differential/refine_values.h"
 #include "far_ext/error.h"
-#include "far_ext/refiner.h"
-#include "far_ext/sparse_rows.h"
+#include "far_ext/topology/refiner.h"
+#include "far_ext/rows/sparse_rows.h"
 #include "support/files.h"
 #include "support/fit_meshes.h"
 #include "support/meshes.h"

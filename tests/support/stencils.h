@@ -9,7 +9,7 @@
 #include <opensubdiv/far/ptexIndices.h>
 #include <opensubdiv/far/stencilTableFactory.h>
 
-#include "far_ext/refiner.h"
+#include "far_ext/topology/refiner.h"
 
 namespace limn::test {
 

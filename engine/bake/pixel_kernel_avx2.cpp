@@ -1,2 +1,0 @@
-#define LIMN_KERNEL avx2
-#include "engine/bake/pixel_kernel.inc"

@@ -1,0 +1,234 @@
+#include "engine/differential/differential.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "engine/scene/job.h"
+#include "engine/scene/refine.h"
+#include "eval/differential/area_fit.h"
+#include "eval/differential/dirmag.h"
+#include "eval/differential/reconstruct.h"
+#include "eval/differential/subdivide_values.h"
+#include "far_ext/error.h"
+#include "far_ext/differential/laplacian.h"
+
+namespace limn::engine {
+
+namespace {
+
+using Level = Far::TopologyLevel;
+using Rows = std::vector<double>;
+
+void ApplyFilter(eval::DirMag& split) {
+    auto const [low, high] = std::minmax_element(split.magnitudes.begin(), split.magnitudes.end());
+    double const least = *low, range = *high - *low;
+    if (!(range > 0.0)) return;  // nothing to tell apart
+    for (double& magnitude : split.magnitudes) magnitude = least + range * PolariseCurvature((magnitude - least) / range);
+}
+
+/// Changes coordinates of a level whose first vertices are the input's.
+void ApplyEdit(CurvatureEdit const& edit, Level const& level, Rows const& positions, double orientation, Rows& deltas) {
+    if (edit.isPolarised) {
+        auto split = eval::SplitDirMag(level, positions, deltas);
+        for (double& magnitude : split.magnitudes) magnitude *= orientation;
+        ApplyFilter(split);
+        for (double& magnitude : split.magnitudes) magnitude *= orientation;
+        deltas = eval::JoinDirMag(split);
+    }
+    for (auto const& [vertex, factor] : edit.factors) {
+        for (size_t c = 0; c < 3; ++c) deltas[3 * static_cast<size_t>(vertex) + c] *= factor;
+    }
+    for (auto const& [vertex, axis, degrees] : edit.rotations) {
+        Eigen::Vector3d const direction = Eigen::Vector3d(axis.data()).normalized();
+        Eigen::Map<Eigen::Vector3d> delta(&deltas[3 * static_cast<size_t>(vertex)]);
+        delta = Eigen::AngleAxisd(degrees * std::acos(-1.0) / 180.0, direction) * Eigen::Vector3d(delta);
+    }
+}
+
+/// A boundary vertex has no mean curvature of its own; it takes the mean of its inner neighbours'.
+void ExtendToBoundary(Level const& level, Rows& deltas) {
+    for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
+        if (!level.IsVertexBoundary(vertex)) continue;
+        Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+        int count = 0;
+        for (Index edge : level.GetVertexEdges(vertex)) {
+            Index const other = far_ext::GetOtherEnd(level, edge, vertex);
+            if (level.IsVertexBoundary(other)) continue;
+            sum += Eigen::Vector3d(&deltas[3 * static_cast<size_t>(other)]);
+            ++count;
+        }
+        Eigen::Vector3d::Map(&deltas[3 * static_cast<size_t>(vertex)]) = sum / std::max(1, count);
+    }
+}
+
+double FindSize(Rows const& positions) {
+    double mean[3] = {0, 0, 0}, sum = 0.0, count = static_cast<double>(positions.size()) / 3.0;
+    for (size_t i = 0; i < positions.size(); ++i) mean[i % 3] += positions[i] / count;
+    for (size_t i = 0; i < positions.size(); ++i) sum += (positions[i] - mean[i % 3]) * (positions[i] - mean[i % 3]);
+    return std::sqrt(sum / count);
+}
+
+class DifferentialRefinement {
+public:
+    DifferentialRefinement(Scene const& scene, int levels, DifferentialOptions const& options, double orientation,
+                           DifferentialReport& report)
+        : _options(options), _orientation(orientation), _report(report), _spatial(scene.positions) {
+        Scene curved = scene;
+        curved.cage.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+        _refiner = MakeUniformRefiner(curved, levels);
+    }
+
+    Far::TopologyRefiner const& GetRefiner() const { return *_refiner; }
+    Rows Run();
+
+private:
+    Level GetStart() const { return _refiner->GetLevel(_options.spatialLevels); }
+    Level GetLast() const { return _refiner->GetLevel(_refiner->GetMaxLevel()); }
+
+    far_ext::AreaLaplacian BuildAreaLaplacian(Level const& level, std::span<double const> positions) const {
+        return _options.laplacian == Laplacian::Mesh ? far_ext::BuildHeatLaplacian(level, positions)
+                                                     : far_ext::BuildCotangentLaplacian(level, positions);
+    }
+    Rows FindAreaDeltas(Rows const& positions) const;
+    Rows Subdivide(Rows deltas);
+    void FitAreas(eval::Reconstructor& reconstructor, Rows const& deltas, Rows& positions);
+
+    DifferentialOptions const& _options;
+    double _orientation;
+    DifferentialReport& _report;
+    std::unique_ptr<Far::TopologyRefiner> _refiner;
+    Rows _spatial;  // positions of the level reached in space
+    Rows _start;    // those where differential coordinates begin
+};
+
+Rows DifferentialRefinement::FindAreaDeltas(Rows const& positions) const {
+    auto const laplacian = BuildAreaLaplacian(GetStart(), positions);
+    Rows deltas(positions.size());
+    laplacian.rows.Apply(positions.data(), deltas.data(), 3);
+    for (size_t i = 0; i < deltas.size(); ++i) deltas[i] /= laplacian.areas[i / 3];
+    ExtendToBoundary(GetStart(), deltas);
+    return deltas;
+}
+
+/// Edits coordinates of the start level and takes them to the last.
+Rows DifferentialRefinement::Subdivide(Rows deltas) {
+    ApplyEdit(_options.edit, GetStart(), _start, _orientation, deltas);
+    int level = _options.spatialLevels;
+    auto split = eval::SplitDirMag(GetStart(), _start, deltas);
+    _report.tangentialShare = split.tangentialShare;
+    if (_options.dirMagLevels > 0) {
+        for (int end = level + _options.dirMagLevels; level < end; ++level) {
+            CheckInterrupted();
+            split = eval::SubdivideDirMag(far_ext::BuildSubdivisionRows(*_refiner, level + 1, _options.rule), split);
+        }
+        deltas = eval::JoinDirMag(split);
+    }
+    for (; level < _refiner->GetMaxLevel(); ++level) {
+        CheckInterrupted();
+        deltas = eval::SubdivideValues<3>(*_refiner, level + 1, _options.rule, deltas);
+    }
+    return deltas;
+}
+
+void DifferentialRefinement::FitAreas(eval::Reconstructor& reconstructor, Rows const& deltas, Rows& positions) {
+    auto const build = [&](std::span<double const> p) {
+        CheckInterrupted();
+        return BuildAreaLaplacian(GetLast(), p);
+    };
+    auto const fit = eval::FitAreaLaplacian(*_refiner, reconstructor.GetMultigrid(), build, deltas, positions);
+    _report.iterations += fit.iterations;
+    _report.residual = fit.residual;
+    _report.converged = fit.converged;
+}
+
+Rows DifferentialRefinement::Run() {
+    _start = _spatial;
+    for (int level = 1; level <= _refiner->GetMaxLevel(); ++level) {
+        CheckInterrupted();
+        _spatial = eval::SubdivideValues<3>(*_refiner, level, _options.rule, _spatial);
+        if (level == _options.spatialLevels) _start = _spatial;
+    }
+    auto const combinatorial = far_ext::BuildCombinatorialLaplacian(GetStart());
+    Rows deltas(_start.size());
+    combinatorial.Apply(_start.data(), deltas.data(), 3);
+    deltas = Subdivide(std::move(deltas));
+    double const scale = std::pow(0.25, _refiner->GetMaxLevel() - _options.spatialLevels);
+    for (double& delta : deltas) delta *= scale;
+    Rows areaDeltas;
+    if (_options.laplacian != Laplacian::Combinatorial) areaDeltas = Subdivide(FindAreaDeltas(_start));
+
+    CheckInterrupted();
+    auto const start = std::chrono::steady_clock::now();
+    Rows positions = _spatial;
+    eval::Reconstructor reconstructor(*_refiner, _options.handles, _options.usesCholesky ? _refiner->GetMaxLevel() : 0);
+    auto const solve = reconstructor.Solve(deltas, positions, {.tolerance = _options.tolerance});
+    _report.unknowns = reconstructor.GetMultigrid().GetLevels().back().numUnknowns;
+    _report.iterations = solve.iterations;
+    _report.residual = solve.residual;
+    _report.compatibilityDefect = solve.compatibilityDefect;
+    _report.converged = solve.converged;
+    if (!areaDeltas.empty()) FitAreas(reconstructor, areaDeltas, positions);
+    _report.solveSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+    double const size = FindSize(_spatial);
+    _report.sizeRatio = size > 0.0 ? FindSize(positions) / size : 1.0;
+    _report.energy = eval::FindThinPlateEnergy(eval::MeasureMeshCurvature(GetLast(), positions, _orientation));
+    return positions;
+}
+
+void CheckOptions(Scene const& scene, int levels, DifferentialOptions const& options) {
+    if (options.spatialLevels + options.dirMagLevels > levels) {
+        throw Error(ErrorCode::BadOption, fmt::format("--levels {} holds no {} levels in space and {} by direction and magnitude",
+                                                      levels, options.spatialLevels, options.dirMagLevels));
+    }
+    if (options.laplacian != Laplacian::Combinatorial && options.usesCholesky) {
+        throw Error(ErrorCode::BadOption, "--solver cholesky: only the combinatorial Laplacian stays the same from step to step; "
+                                          "use multigrid");
+    }
+    auto const check = [&](Index vertex) {
+        if (vertex >= 0 && vertex < scene.cage.numVertices) return;
+        throw Error(ErrorCode::BadMesh,
+                    fmt::format("the edit names vertex {}; there are 0 to {}", vertex, scene.cage.numVertices - 1));
+    };
+    for (auto const& factor : options.edit.factors) check(factor.vertex);
+    for (auto const& rotation : options.edit.rotations) check(rotation.vertex);
+}
+
+void Warn(Scene const& scene, DifferentialOptions const& options, DifferentialReport& report) {
+    if (!scene.cage.creaseSharpness.empty()) {
+        report.warnings.push_back("creases get round: differential coordinates hold no tangents; refine this mesh in space");
+    }
+    if (report.tangentialShare > eval::kDirMagLimit && options.dirMagLevels > 0) {
+        report.warnings.push_back(fmt::format("tangential parts are {:.2f} of the differential coordinates, more than {}: --dirmag "
+                                              "takes them for normals; leave it out",
+                                              report.tangentialShare, eval::kDirMagLimit));
+    }
+    if (std::abs(report.sizeRatio - 1.0) > 0.1) {
+        report.warnings.push_back(fmt::format("the result has {:.2f} times the size of the spatial refinement; --spatial-first 1 "
+                                              "brings coarse cages nearer",
+                                              report.sizeRatio));
+    }
+}
+
+}  // namespace
+
+double PolariseCurvature(double x) {
+    double const push = std::pow(std::abs(x - 0.5) / 8.0, 0.25);
+    return x > 0.5 ? 0.5 + push : 0.5 - push;
+}
+
+Scene RefineDifferentially(Scene const& scene, int levels, DifferentialOptions const& options, double orientation,
+                           DifferentialReport& report) {
+    CheckOptions(scene, levels, options);
+    DifferentialRefinement refinement(scene, levels, options, orientation, report);
+    Scene fine = RefineAllButPositions(scene, refinement.GetRefiner());
+    fine.positions = refinement.Run();
+    Warn(scene, options, report);
+    return fine;
+}
+
+}  // namespace limn::engine

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "engine/scene/scene.h"
+#include "eval/differential/mesh_curvature.h"
+#include "far_ext/differential/subdivision_rows.h"
+
+namespace limn::engine {
+
+/// Changes to differential coordinates before they are subdivided, by vertices of the input.
+struct CurvatureEdit {
+    struct Factor {
+        Index vertex;
+        double factor;
+    };
+    struct Rotation {
+        Index vertex;
+        std::array<double, 3> axis;
+        double degrees;
+    };
+    bool isPolarised = false;        ///< first: mean curvatures, brought to [0, 1], through [Zhu11] Sec. 4.4's filter
+    std::vector<Factor> factors;     ///< then: on mean curvature
+    std::vector<Rotation> rotations; ///< last: of its direction
+};
+
+/// [Zhu11] Sec. 4.4: 1/2 +- (|x - 1/2| / 8)^(1/4), which pushes values apart around the middle.
+double PolariseCurvature(double x);
+
+enum class Laplacian { Combinatorial, Cotangent, Mesh };
+
+struct DifferentialOptions {
+    far_ext::SubdivisionRule rule = far_ext::SubdivisionRule::Scheme;
+    Laplacian laplacian = Laplacian::Combinatorial;
+    int dirMagLevels = 0;   ///< levels done by direction and magnitude
+    int spatialLevels = 0;  ///< levels done in space before
+    std::vector<Index> handles;
+    bool usesCholesky = false;
+    double tolerance = 1e-8;
+    CurvatureEdit edit;
+};
+
+struct DifferentialReport {
+    Index unknowns = 0;
+    int iterations = 0;
+    double solveSeconds = 0.0;  ///< set-up of the solver included
+    double residual = 0.0, compatibilityDefect = 0.0;
+    bool converged = false;
+    double tangentialShare = 0.0;  ///< of the differential coordinates; see eval::DirMag
+    double sizeRatio = 1.0;        ///< rms distance from the mean vertex, over that of the spatial refinement
+    eval::ThinPlateEnergy energy;
+    std::vector<std::string> warnings;
+};
+
+/// Subdivides differential coordinates instead of positions, then finds the mesh that has them.
+///
+/// Boundaries follow the curve rule (edge-only) whatever the scene's option, in coordinates and in space. The
+/// result has RefineUniformly's topology, attributes and vertex order; handles lie where that puts them. Its size
+/// is not the spatial one's, and nothing rescales it.
+///
+/// \param orientation  +1, or -1 for faces that are clockwise seen from outside
+/// \throws Error  as RefineUniformly; BadOption: contradicting levels or handles.  BadMesh: boundaries that meet in
+///                a vertex, an edit of a vertex that is not there, with cotangents a triangle without area.
+///                Unsupported: a Laplacian or rule that needs triangles
+/// Source  [Zhu11]
+Scene RefineDifferentially(Scene const& scene, int levels, DifferentialOptions const& options, double orientation,
+                           DifferentialReport& report);
+
+}  // namespace limn::engine

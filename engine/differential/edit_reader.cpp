@@ -1,0 +1,97 @@
+#include "engine/differential/edit_reader.h"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "engine/io/file.h"
+#include "far_ext/error.h"
+
+namespace limn::engine {
+
+namespace {
+
+using Json = nlohmann::json;
+
+class EditReader {
+public:
+    explicit EditReader(std::string const& path) : _path(path) {}
+
+    CurvatureEdit Read() const {
+        InputFile const file(_path);
+        Json const json = Json::parse(file.GetBytes(), nullptr, /*allow_exceptions=*/false);
+        if (!json.is_object()) Refuse("this is no JSON object");
+        CurvatureEdit edit;
+        for (auto const& [key, value] : json.items()) {
+            if (key == "curvature") {
+                for (Json const& entry : ListOf(key, value)) {
+                    edit.factors.push_back({VertexOf(key, entry), NumberOf(key, entry, "factor")});
+                    CheckKeys(key, entry, 2);
+                }
+            } else if (key == "rotate") {
+                for (Json const& entry : ListOf(key, value)) {
+                    edit.rotations.push_back({VertexOf(key, entry), AxisOf(entry), NumberOf(key, entry, "degrees")});
+                    CheckKeys(key, entry, 3);
+                }
+            } else if (key == "filter") {
+                if (value != "polarise") Refuse(fmt::format("filter is {}; 'polarise' is possible", value.dump()));
+                edit.isPolarised = true;
+            } else {
+                Refuse(fmt::format("key '{}' is not known; curvature, rotate and filter are", key));
+            }
+        }
+        return edit;
+    }
+
+private:
+    [[noreturn]] void Refuse(std::string const& what) const {
+        throw Error(ErrorCode::BadMesh, fmt::format("{}: {}", _path, what));
+    }
+
+    Json const& ListOf(std::string const& key, Json const& value) const {
+        if (!value.is_array()) Refuse(fmt::format("'{}' is no list", key));
+        return value;
+    }
+
+    /// All keys that are needed have been found; there must be no others.
+    void CheckKeys(std::string const& key, Json const& entry, size_t count) const {
+        if (entry.size() != count) Refuse(fmt::format("'{}': {} has unknown keys", key, entry.dump()));
+    }
+
+    Index VertexOf(std::string const& key, Json const& entry) const {
+        double const value = NumberOf(key, entry, "vertex");
+        bool const isIndex = value == std::floor(value) && value >= 0.0 && value < std::numeric_limits<Index>::max();
+        if (!isIndex) Refuse(fmt::format("'{}': vertex {} is no 0-based index", key, value));
+        return static_cast<Index>(value);
+    }
+
+    double NumberOf(std::string const& key, Json const& entry, char const* name) const {
+        if (!entry.is_object() || !entry.contains(name) || !entry[name].is_number()) {
+            Refuse(fmt::format("'{}': {} has no number '{}'", key, entry.dump(), name));
+        }
+        return entry[name].get<double>();
+    }
+
+    std::array<double, 3> AxisOf(Json const& entry) const {
+        bool const isAxis = entry.contains("axis") && entry["axis"].is_array() && entry["axis"].size() == 3;
+        std::array<double, 3> axis{};
+        for (size_t c = 0; isAxis && c < 3; ++c) {
+            Json const& number = entry["axis"][c];
+            axis[c] = number.is_number() ? number.get<double>() : 0.0;
+        }
+        if (!(std::hypot(axis[0], axis[1], axis[2]) > 0.0)) {
+            Refuse(fmt::format("'rotate': {} has no axis of three numbers", entry.dump()));
+        }
+        return axis;
+    }
+
+    std::string const& _path;
+};
+
+}  // namespace
+
+CurvatureEdit ReadCurvatureEdit(std::string const& path) { return EditReader(path).Read(); }
+
+}  // namespace limn::engine

@@ -1,0 +1,88 @@
+#include "engine/differential/polyline_file.h"
+
+#include <iterator>
+
+#include "engine/io/file.h"
+#include "engine/io/text_scanner.h"
+
+namespace limn::engine {
+
+namespace {
+
+/// "7", "-1" or "7/2" to a 0-based index.
+size_t ResolveIndex(TextScanner& scan, std::string_view word, size_t count) {
+    long long value = 0;
+    auto const [stop, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+    bool const isNumber = code == std::errc() && (stop == word.data() + word.size() || *stop == '/');
+    long long const index = value > 0 ? value - 1 : static_cast<long long>(count) + value;
+    if (!isNumber || value == 0 || index < 0 || index >= static_cast<long long>(count)) {
+        scan.Refuse(fmt::format("a polyline's vertex index is {}; 1 to {} or -{} to -1 are possible here",
+                                TextScanner::Quote(word), count, count));
+    }
+    return static_cast<size_t>(index);
+}
+
+eval::Curve ReadLine(TextScanner& scan, std::vector<eval::DoubleLanes> const& points) {
+    std::vector<size_t> indices;
+    scan.DropComment();
+    for (std::string_view word = scan.Word(); !word.empty(); word = scan.Word()) {
+        indices.push_back(ResolveIndex(scan, word, points.size()));
+    }
+    eval::Curve curve;
+    curve.isClosed = indices.size() > 1 && indices.front() == indices.back();
+    if (curve.isClosed) indices.pop_back();
+    size_t const least = curve.isClosed ? 3 : 2;
+    if (indices.size() < least) {
+        scan.Refuse(fmt::format("{} polyline has {} points; at least {} are needed", curve.isClosed ? "a closed" : "a",
+                                indices.size(), least));
+    }
+    for (size_t index : indices) curve.points.push_back(points[index]);
+    return curve;
+}
+
+}  // namespace
+
+std::vector<eval::Curve> ReadPolylines(std::string const& path) {
+    InputFile const file(path);
+    TextScanner scan(file.GetBytes(), path);
+    std::vector<eval::DoubleLanes> points;
+    std::vector<eval::Curve> curves;
+    while (scan.NextLine()) {
+        std::string_view const keyword = scan.Word();
+        if (keyword == "v") {
+            double const x = scan.Number("x"), y = scan.Number("y"), z = scan.Number("z");
+            points.push_back({x, y, z, 0.0});
+        } else if (keyword == "l") {
+            curves.push_back(ReadLine(scan, points));
+        }
+    }
+    if (curves.empty()) {
+        throw Error(ErrorCode::BadMesh, fmt::format("{}: the file has no polylines; --curve needs 'l' lines", path));
+    }
+    return curves;
+}
+
+void WritePolylines(std::string const& path, std::vector<eval::Curve> const& curves, bool isDouble) {
+    if (GetEnding(path) != ".obj") {
+        throw Error(ErrorCode::BadOption, fmt::format("-o '{}': polylines are written as .obj", path));
+    }
+    fmt::memory_buffer text;
+    auto const to = std::back_inserter(text);
+    size_t first = 1;
+    for (eval::Curve const& curve : curves) {
+        for (eval::DoubleLanes const& p : curve.points) {
+            if (isDouble) fmt::format_to(to, "v {} {} {}\n", p[0], p[1], p[2]);
+            else fmt::format_to(to, "v {} {} {}\n", static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]));
+        }
+    }
+    for (eval::Curve const& curve : curves) {
+        fmt::format_to(to, "l");
+        for (size_t i = 0; i < curve.points.size(); ++i) fmt::format_to(to, " {}", first + i);
+        if (curve.isClosed) fmt::format_to(to, " {}", first);
+        fmt::format_to(to, "\n");
+        first += curve.points.size();
+    }
+    WriteFileAtomically(path, fmt::to_string(text));
+}
+
+}  // namespace limn::engine

@@ -1,0 +1,91 @@
+#include "engine/fit/bands.h"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "engine/scene/job.h"
+#include "far_ext/error.h"
+
+namespace limn::engine {
+
+MeshExtent MeasureExtent(Scene const& scene, Far::TopologyLevel const& level) {
+    MeshExtent extent;
+    auto const point = [&](size_t vertex) { return Eigen::Vector3d::Map(&scene.positions[3 * vertex]); };
+    Eigen::Vector3d low = point(0), high = low;
+    for (size_t vertex = 1; vertex < scene.positions.size() / 3; ++vertex) {
+        low = low.cwiseMin(point(vertex));
+        high = high.cwiseMax(point(vertex));
+    }
+    for (size_t c = 0; c < 3; ++c) {
+        extent.low[c] = low[static_cast<Eigen::Index>(c)];
+        extent.high[c] = high[static_cast<Eigen::Index>(c)];
+    }
+    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+        if (level.IsEdgeBoundary(edge) || level.IsEdgeNonManifold(edge)) return extent;
+    }
+    // Tetrahedra from a point near by, which keeps the digits of a mesh far from the origin.
+    double sixfold = 0.0;
+    size_t corner = 0;
+    for (int size : scene.cage.faceSizes) {
+        auto const at = [&](size_t i) -> Eigen::Vector3d { return point(static_cast<size_t>(scene.cage.faceVertices[corner + i])) - low; };
+        for (size_t i = 1; i + 1 < static_cast<size_t>(size); ++i) sixfold += at(0).dot(at(i).cross(at(i + 1)));
+        corner += static_cast<size_t>(size);
+    }
+    extent.volume = sixfold / 6.0;
+    return extent;
+}
+
+std::vector<std::vector<double>> SplitIntoBands(Scene const& scene, eval::LimitOperator const& A, int count) {
+    eval::RequireFinite(scene.positions, 3);
+    std::vector<std::vector<double>> bands;
+    std::vector<double> rest = scene.positions;
+    eval::ApplyHighPass(A, 3, count, rest, [&](int i, std::span<double const> part) {
+        CheckInterrupted();
+        // Band i is (E-A)^i A M = (E-A)^i M - (E-A)^(i+1) M.
+        if (i > 0) {
+            for (size_t k = 0; k < part.size(); ++k) bands.back()[k] -= part[k];
+        }
+        bands.emplace_back(part.begin(), part.end());
+    });
+    return bands;
+}
+
+namespace {
+
+void RequireSameFaces(Scene const& from, Scene const& to) {
+    auto const refuse = [&](std::string const& what) {
+        throw Error(ErrorCode::BadMesh, fmt::format("{} and {} do not have the same faces: {}; a morph needs the same vertices and "
+                                                    "faces in the same order",
+                                                    from.path, to.path, what));
+    };
+    auto const &a = from.cage, &b = to.cage;
+    if (a.numVertices != b.numVertices) refuse(fmt::format("{} and {} vertices", a.numVertices, b.numVertices));
+    if (a.GetNumFaces() != b.GetNumFaces()) refuse(fmt::format("{} and {} faces", a.GetNumFaces(), b.GetNumFaces()));
+    size_t corner = 0;
+    for (Index face = 0; face < a.GetNumFaces(); ++face) {
+        size_t const size = static_cast<size_t>(a.faceSizes[face]);
+        bool isSame = a.faceSizes[face] == b.faceSizes[face];
+        for (size_t i = corner; isSame && i < corner + size; ++i) isSame = a.faceVertices[i] == b.faceVertices[i];
+        if (!isSame) {
+            refuse(fmt::format("{} has other vertices than {}", from.NameFace(face), to.NameFace(face)));
+        }
+        corner += size;
+    }
+}
+
+}  // namespace
+
+void Morph(Scene const& from, Scene const& to, eval::LimitOperator const& A, int detail, double rate, int steps, VisitFrame const& visit) {
+    RequireSameFaces(from, to);
+    eval::RequireFinite(from.positions, 3);
+    eval::RequireFinite(to.positions, 3);
+    std::vector<double> Q = from.positions;
+    for (int step = 1; step <= steps; ++step) {
+        CheckInterrupted();
+        eval::MorphStep(A, 3, detail, rate, to.positions, Q);
+        visit(step, Q);
+    }
+}
+
+}  // namespace limn::engine

@@ -1,0 +1,2 @@
+#define LIMN_KERNEL avx2
+#include "engine/images/pixel_kernel.inc"

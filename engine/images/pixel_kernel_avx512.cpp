@@ -1,0 +1,2 @@
+#define LIMN_KERNEL avx512
+#include "engine/images/pixel_kernel.inc"

@@ -1,0 +1,2 @@
+#define LIMN_KERNEL sse2
+#include "engine/images/pixel_kernel.inc"

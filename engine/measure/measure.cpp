@@ -1,0 +1,243 @@
+#include "engine/measure/measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include "engine/scene/job.h"
+#include "eval/surface/graded_points.h"
+#include "eval/surface/surface_sample.h"
+#include "far_ext/topology/face_components.h"
+
+namespace limn::engine {
+
+namespace {
+
+using Level = Far::TopologyLevel;
+constexpr double kPi = 3.14159265358979323846;
+
+/// Sums over places of a surface; `area` is what each stands for.
+struct Sums {
+    double area = 0.0, volume = 0.0, bending = 0.0, mean = 0.0, meanSquares = 0.0;
+    double gaussian = 0.0, gaussianSquares = 0.0, gaussianMagnitude = 0.0;
+    double minMean = std::numeric_limits<double>::infinity(), maxMean = -minMean;
+    double minGaussian = minMean, maxGaussian = -minMean;
+    size_t count = 0;
+
+    void AddCurvature(double share, double k1, double k2) {
+        double const h = 0.5 * (k1 + k2), k = k1 * k2;
+        area += share;
+        bending += share * (k1 * k1 + k2 * k2);
+        mean += share * h;
+        meanSquares += share * h * h;
+        gaussian += share * k;
+        gaussianSquares += share * k * k;
+        gaussianMagnitude += share * std::abs(k);
+        minMean = std::min(minMean, h);
+        maxMean = std::max(maxMean, h);
+        minGaussian = std::min(minGaussian, k);
+        maxGaussian = std::max(maxGaussian, k);
+        ++count;
+    }
+    void Add(Sums const& other) {
+        area += other.area;
+        volume += other.volume;
+        bending += other.bending;
+        mean += other.mean;
+        meanSquares += other.meanSquares;
+        gaussian += other.gaussian;
+        gaussianSquares += other.gaussianSquares;
+        gaussianMagnitude += other.gaussianMagnitude;
+        minMean = std::min(minMean, other.minMean);
+        maxMean = std::max(maxMean, other.maxMean);
+        minGaussian = std::min(minGaussian, other.minGaussian);
+        maxGaussian = std::max(maxGaussian, other.maxGaussian);
+        count += other.count;
+    }
+};
+
+CurvatureStatistics MakeStatistics(Sums const& sums, double sum, double squares, double min, double max) {
+    if (sums.count == 0 || !(sums.area > 0.0)) return {};
+    double const mean = sum / sums.area;
+    return {min, max, mean, std::sqrt(std::max(0.0, squares / sums.area - mean * mean))};
+}
+
+class Surveyor {
+public:
+    Surveyor(Scene const& scene, Far::TopologyRefiner const& refiner, double orientation)
+        : _scene(scene),
+          _refiner(refiner),
+          _level(refiner.GetLevel(0)),
+          _orientation(orientation),
+          _components(far_ext::FaceComponents::Find(_level)) {}
+
+    std::vector<Sums> SurveyLimit() const;
+    std::vector<Sums> SurveyMesh() const;
+    Measurement Conclude(std::vector<Sums> const& ofComponents, MeasuredSurface surface) const;
+
+private:
+    std::vector<std::string> FindReasons(MeasuredSurface surface) const;
+
+    Scene const& _scene;
+    Far::TopologyRefiner const& _refiner;
+    Level _level;
+    double _orientation;
+    far_ext::FaceComponents _components;
+};
+
+/// Sums of faces, added in order: the same bits whatever the threads.
+std::vector<Sums> Surveyor::SurveyLimit() const {
+    eval::LimitSurface const surface(_refiner);
+    eval::GradedPoints const points(surface);
+    std::vector<Sums> ofFaces(_components.ofFace.size());
+    tbb::enumerable_thread_specific<eval::FaceTree> trees([&] { return eval::FaceTree(surface, _scene.positions, 3); });
+    tbb::parallel_for(tbb::blocked_range<Index>(0, surface.GetNumFaces(), 64), [&](auto const& faces) {
+        CheckInterrupted();
+        eval::FaceTree& tree = trees.local();
+        for (Index face = faces.begin(); face < faces.end(); ++face) {
+            if (!surface.HasLimit(face)) continue;
+            tree.Bind(face);
+            points.ForEach(face, [&](eval::FacePlace const& place, double weight) {
+                auto const x = eval::EvaluateSample(tree, place.domain, place.s, place.t, _orientation);
+                double const area = weight * x.tangentS.cross(x.tangentT).norm();
+                ofFaces[face].volume += area * x.position.dot(x.normal) / 3.0;
+                if (area > 0.0 && !x.isDegenerate) ofFaces[face].AddCurvature(area, x.curvature.k1, x.curvature.k2);
+            });
+        }
+    });
+    std::vector<Sums> ofComponents(static_cast<size_t>(_components.count));
+    for (size_t face = 0; face < ofFaces.size(); ++face) ofComponents[_components.ofFace[face]].Add(ofFaces[face]);
+    return ofComponents;
+}
+
+std::vector<Sums> Surveyor::SurveyMesh() const {
+    std::vector<Sums> ofComponents(static_cast<size_t>(_components.count));
+    auto const curvature = eval::MeasureMeshCurvature(_level, _scene.positions, _orientation);
+    for (Index vertex = 0; vertex < _level.GetNumVertices(); ++vertex) {
+        if (!(curvature.areas[vertex] > 0.0)) continue;
+        Sums& sums = ofComponents[_components.ofFace[_level.GetVertexFaces(vertex)[0]]];
+        sums.AddCurvature(curvature.areas[vertex], curvature.k1[vertex], curvature.k2[vertex]);
+    }
+    auto const normals = eval::FindFaceNormals(_level, _scene.positions);
+    for (Index face = 0; face < _level.GetNumFaces(); ++face) {
+        double const* const n = &normals[3 * static_cast<size_t>(face)];
+        auto const vertices = _level.GetFaceVertices(face);
+        double heights = 0.0;
+        for (Index vertex : vertices) {
+            double const* const p = &_scene.positions[3 * static_cast<size_t>(vertex)];
+            heights += (p[0] * n[0] + p[1] * n[1] + p[2] * n[2]) / vertices.size();
+        }
+        ofComponents[_components.ofFace[face]].volume += _orientation * heights / 3.0;
+    }
+    return ofComponents;
+}
+
+/// Per component why its integral of K is not to be compared with 2 pi chi; empty where it is.
+std::vector<std::string> Surveyor::FindReasons(MeasuredSurface surface) const {
+    std::vector<std::string> reasons(static_cast<size_t>(_components.count));
+    bool const isLimit = surface == MeasuredSurface::Limit;
+    for (Index face = 0; face < _level.GetNumFaces(); ++face) {
+        std::string& reason = reasons[_components.ofFace[face]];
+        if (!reason.empty()) continue;
+        if (isLimit && _scene.cage.scheme == Sdc::SCHEME_BILINEAR) reason = "a bilinear surface has a crease along every edge";
+        if (isLimit && _level.IsFaceHole(face)) reason = "it has a hole";
+        for (Index edge : _level.GetFaceEdges(face)) {
+            if (_level.GetEdgeFaces(edge).size() != 2) reason = "it is not closed";
+            else if (isLimit && _level.IsEdgeInfSharp(edge)) reason = "it has infinitely sharp creases";
+        }
+        for (Index vertex : _level.GetFaceVertices(face)) {
+            if (isLimit && reason.empty() && _level.IsVertexInfSharp(vertex)) reason = "it has infinitely sharp corners";
+        }
+    }
+    return reasons;
+}
+
+Measurement Surveyor::Conclude(std::vector<Sums> const& ofComponents, MeasuredSurface surface) const {
+    Measurement result;
+    auto const reasons = FindReasons(surface);
+    auto const euler = _components.FindEulerCharacteristics(_level);
+    Sums all;
+    for (size_t c = 0; c < static_cast<size_t>(_components.count); ++c) {
+        Sums const& sums = ofComponents[c];
+        all.Add(sums);
+        GaussBonnetAudit audit;
+        audit.component = static_cast<int>(c);
+        audit.integral = sums.gaussian;
+        audit.expected = 2.0 * kPi * euler[c];
+        audit.relativeError = std::abs(audit.integral - audit.expected) / std::max(2.0 * kPi, sums.gaussianMagnitude);
+        audit.reason = reasons[c];
+        audit.wasAudited = audit.reason.empty();
+        result.gaussBonnet.push_back(std::move(audit));
+        result.eulerCharacteristic += euler[c];
+    }
+    bool isClosed = true;
+    for (Index edge = 0; edge < _level.GetNumEdges(); ++edge) isClosed &= _level.GetEdgeFaces(edge).size() == 2;
+    if (isClosed && _scene.cage.holes.empty()) result.volume = all.volume;
+    result.area = all.area;
+    if (surface == MeasuredSurface::Mesh) {  // boundary vertices have area, too
+        auto const normals = eval::FindFaceNormals(_level, _scene.positions);
+        result.area = 0.0;
+        for (size_t i = 0; i < normals.size(); i += 3) result.area += std::hypot(normals[i], normals[i + 1], normals[i + 2]);
+    }
+    result.energy = {all.area > 0.0 ? all.bending / all.area : 0.0, all.bending};
+    result.mean = MakeStatistics(all, all.mean, all.meanSquares, all.minMean, all.maxMean);
+    result.gaussian = MakeStatistics(all, all.gaussian, all.gaussianSquares, all.minGaussian, all.maxGaussian);
+    result.numSamples = all.count;
+    return result;
+}
+
+/// k1 and k2 of every vertex, exact ones of the limit.
+std::array<std::vector<double>, 2> FindLimitCurvature(Scene const& scene, Far::TopologyRefiner const& refiner,
+                                                      double orientation) {
+    eval::LimitSurface const surface(refiner);
+    eval::FaceTree tree(surface, scene.positions, 3);
+    std::vector<char> isDone(static_cast<size_t>(scene.cage.numVertices), 0);
+    std::vector<double> const zeros(isDone.size(), 0.0);
+    std::array<std::vector<double>, 2> curvatures{zeros, zeros};
+    for (Index face = 0; face < surface.GetNumFaces(); ++face) {
+        if (!surface.HasLimit(face)) continue;
+        CheckInterrupted();
+        tree.Bind(face);
+        auto const vertices = refiner.GetLevel(0).GetFaceVertices(face);
+        for (int corner = 0; corner < vertices.size(); ++corner) {
+            if (isDone[vertices[corner]]++) continue;
+            auto const place = eval::GetCornerPlace(surface, face, corner);
+            auto const x = eval::EvaluateSample(tree, place.domain, place.s, place.t, orientation);
+            curvatures[0][vertices[corner]] = x.curvature.k1;
+            curvatures[1][vertices[corner]] = x.curvature.k2;
+        }
+    }
+    return curvatures;
+}
+
+}  // namespace
+
+Measurement Measure(Scene const& scene, Far::TopologyRefiner const& refiner, MeasuredSurface surface, double orientation) {
+    Surveyor const surveyor(scene, refiner, orientation);
+    bool const isLimit = surface == MeasuredSurface::Limit;
+    return surveyor.Conclude(isLimit ? surveyor.SurveyLimit() : surveyor.SurveyMesh(), surface);
+}
+
+Scene AddVertexCurvature(Scene const& scene, Far::TopologyRefiner const& refiner, MeasuredSurface surface, double orientation) {
+    std::array<std::vector<double>, 2> k;
+    if (surface == MeasuredSurface::Limit) {
+        k = FindLimitCurvature(scene, refiner, orientation);
+    } else {
+        auto curvature = eval::MeasureMeshCurvature(refiner.GetLevel(0), scene.positions, orientation);
+        k = {std::move(curvature.k1), std::move(curvature.k2)};
+    }
+    Scene result = scene;
+    for (char const* name : {"mean", "gaussian", "k1", "k2"}) result.primvars.push_back({name, 1, {}});
+    auto* const added = &*(result.primvars.end() - 4);
+    for (size_t v = 0; v < k[0].size(); ++v) {
+        double const values[] = {0.5 * (k[0][v] + k[1][v]), k[0][v] * k[1][v], k[0][v], k[1][v]};
+        for (size_t i = 0; i < 4; ++i) added[i].values.push_back(static_cast<float>(values[i]));
+    }
+    return result;
+}
+
+}  // namespace limn::engine

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <opensubdiv/far/topologyRefiner.h>
+
+#include "engine/bake/audit/gauss_bonnet.h"
+#include "engine/scene/scene.h"
+#include "eval/differential/mesh_curvature.h"
+
+namespace limn::engine {
+
+/// Which surface a measurement is of.
+enum class MeasuredSurface {
+    Limit,  ///< exact curvature of the limit, by cubature
+    Mesh    ///< the mesh itself, by the tensor of its dihedral angles
+};
+
+/// Of a curvature, weighted by area. Extremes are those of the sampled places: curvature may be unbounded next to
+/// extraordinary vertices.
+struct CurvatureStatistics {
+    double min = 0.0, max = 0.0, mean = 0.0, stddev = 0.0;
+};
+
+struct Measurement {
+    double area = 0.0;
+    std::optional<double> volume;  ///< of closed surfaces; positive where normals point out
+    int eulerCharacteristic = 0;
+    eval::ThinPlateEnergy energy;
+    CurvatureStatistics mean, gaussian;
+    size_t numSamples = 0;  ///< places that statistics and integrals come from
+    std::vector<GaussBonnetAudit> gaussBonnet;  ///< per component, as a bake's audit numbers them
+};
+
+/// \param orientation  +1, or -1 to turn the outside round
+/// \throws Interrupted
+Measurement Measure(Scene const& scene, Far::TopologyRefiner const& refiner, MeasuredSurface surface, double orientation);
+
+/// The scene with curvature per vertex as primvars mean, gaussian, k1 and k2; 0 where there is none.
+Scene AddVertexCurvature(Scene const& scene, Far::TopologyRefiner const& refiner, MeasuredSurface surface, double orientation);
+
+}  // namespace limn::engine

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "far_ext/topology/control_mesh.h"
+
+namespace limn::engine {
+
+/// Values that follow the vertices: a PLY's colours and further scalars.
+struct Primvar {
+    std::string name;
+    int numChannels = 1;
+    std::vector<float> values;  ///< numChannels per vertex
+};
+
+/// Which OBJ statement put a face into a group.
+enum class GroupKind { Material, Group, Object };  // usemtl, g, o
+
+/// One kind of face group; `faceGroup` is empty where the file has none of that kind.
+struct FaceGroups {
+    /// As they stand in the file. What follows a `g` may be several names: such a face is in each of these groups.
+    std::vector<std::string> names;
+    std::vector<Index> faceGroup;  ///< per face: index into names, or -1
+};
+
+/// A mesh as a file described it: topology with tags, positions, UVs, groups, primvars.
+struct Scene {
+    std::string path;    ///< as the user gave it, for messages
+    std::string name;    ///< file stem
+    std::string sha256;  ///< of the input bytes, hexadecimal
+
+    far_ext::ControlMesh cage;      ///< fvar channel 0 holds the UVs where there are any
+    std::vector<double> positions;  ///< 3 per vertex
+    std::vector<double> normals;    ///< 3 per vertex, written to OBJ; empty without. Readers leave them out: limits have their own
+    std::vector<double> uvs;        ///< 2 per value of fvar channel 0; empty without UVs
+    std::array<FaceGroups, 3> groups;  ///< by GroupKind
+    std::vector<Primvar> primvars;
+    std::vector<uint32_t> faceLines;  ///< line of each face in a text file; empty otherwise
+
+    /// Which options the file itself set by tags; the command line overrides both.
+    bool hasBoundaryTag = false, hasFVarTag = false;
+
+    std::vector<std::string> warnings;  ///< what the reader remarked, one line each
+
+    bool HasUVs() const { return !uvs.empty(); }
+
+    /// "face 12 (line 345)", or "face 12" where the file has no lines.
+    std::string NameFace(Index face) const;
+};
+
+/// The names that SelectGroups takes, each once.
+std::vector<std::string> ListGroups(Scene const& scene);
+
+/// The faces of the named groups (any kind), or an error that lists what there is.
+///
+/// \return one flag per face
+/// \throws Error  BadOption if a name is unknown
+std::vector<char> SelectGroups(Scene const& scene, std::vector<std::string> const& names);
+
+}  // namespace limn::engine

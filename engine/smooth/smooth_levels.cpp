@@ -1,0 +1,141 @@
+#include "engine/smooth/smooth_levels.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "engine/scene/job.h"
+#include "engine/scene/refine.h"
+#include "eval/differential/refine_values.h"
+#include "far_ext/error.h"
+#include "far_ext/topology/refined_cage.h"
+
+namespace limn::engine {
+
+namespace {
+
+/// Appends the means of pairs of values.
+template <class Value>
+void AppendMeans(std::vector<Value>& values, size_t numChannels, std::span<std::array<Index, 2> const> parents) {
+    for (auto const& [a, b] : parents) {
+        for (size_t c = 0; c < numChannels; ++c) {
+            values.push_back((values[static_cast<size_t>(a) * numChannels + c] + values[static_cast<size_t>(b) * numChannels + c]) / 2);
+        }
+    }
+}
+
+far_ext::Bisection StartBisection(Scene const& scene, bool keepsCreases) {
+    for (Index face = 0; face < scene.cage.GetNumFaces(); ++face) {
+        if (scene.cage.faceSizes[face] == 3) continue;
+        throw Error(ErrorCode::BadMesh, fmt::format("{}: {} has {} corners; --refinement bisect needs triangles, quadrisect takes all polygons",
+                                                    scene.path, scene.NameFace(face), scene.cage.faceSizes[face]));
+    }
+    auto const isInfinite = [](float sharpness) { return sharpness >= far_ext::kInfiniteSharpness; };
+    std::vector<std::array<Index, 2>> creases;
+    std::vector<Index> corners;
+    for (size_t i = 0; keepsCreases && i < scene.cage.creaseSharpness.size(); ++i) {
+        if (isInfinite(scene.cage.creaseSharpness[i])) creases.push_back({scene.cage.creaseVertexPairs[2 * i], scene.cage.creaseVertexPairs[2 * i + 1]});
+    }
+    for (size_t i = 0; keepsCreases && i < scene.cage.cornerSharpness.size(); ++i) {
+        if (isInfinite(scene.cage.cornerSharpness[i])) corners.push_back(scene.cage.cornerVertices[i]);
+    }
+    far_ext::Bisection bisection(scene.cage.numVertices, scene.cage.faceVertices, scene.positions, std::move(creases), std::move(corners));
+    if (scene.HasUVs()) bisection.SetFVarChannel(scene.cage.fvarChannels[0].numValues, scene.cage.fvarChannels[0].valueIndices);
+    return bisection;
+}
+
+}  // namespace
+
+SmoothLevels::SmoothLevels(Scene const& scene, int numLevels, SmoothRefinement refinement, bool keepsCreases)
+    : _scene(scene), _refinement(refinement), _keepsCreases(keepsCreases), _uvs(scene.uvs), _primvars(scene.primvars) {
+    if (refinement == SmoothRefinement::Bisect) _bisection = StartBisection(scene, keepsCreases);
+    else _refiner = MakeUniformRefiner(scene, numLevels);
+}
+
+far_ext::CascadeMesh const& SmoothLevels::MakeNext() {
+    ++_level;
+    if (_refiner) {
+        _mesh = far_ext::MakeCascadeMesh(*_refiner, _level);
+        if (!_keepsCreases) {
+            _mesh.creases.clear();
+            _mesh.corners.clear();
+        }
+        return _mesh;
+    }
+    Index const numCoarse = _level == 1 ? _scene.cage.numVertices : _mesh.numVertices;
+    _mesh = _bisection->Refine();
+    std::vector<std::array<Index, 2>> parents;
+    for (Index vertex = numCoarse; vertex < _mesh.numVertices; ++vertex) {
+        Index const* const own = &_mesh.parents[static_cast<size_t>(_mesh.parentOffsets[vertex])];
+        parents.push_back({own[0], own[1]});
+    }
+    for (Primvar& primvar : _primvars) AppendMeans(primvar.values, static_cast<size_t>(primvar.numChannels), parents);
+    AppendMeans(_uvs, 2, _bisection->GetFVarParents());
+    return _mesh;
+}
+
+std::vector<Index> SmoothLevels::FindBaseFaces() const {
+    if (_bisection) return _bisection->GetBaseFaces();
+    return far_ext::FindBaseFaces(*_refiner, _level);
+}
+
+std::vector<double> SmoothLevels::FindCornerUVs() {
+    std::vector<double> corners;
+    corners.reserve(2 * _mesh.faces.size());
+    auto const add = [&](Index value) { corners.insert(corners.end(), {_uvs[2 * static_cast<size_t>(value)], _uvs[2 * static_cast<size_t>(value) + 1]}); };
+    if (_bisection) {
+        std::for_each(_bisection->GetFVarValues().begin(), _bisection->GetFVarValues().end(), add);
+        return corners;
+    }
+    while (_uvLevel < _level) _uvs = eval::RefineValues<2>(*_refiner, ++_uvLevel, _uvs, 0);
+    auto const level = _refiner->GetLevel(_level);
+    for (Index face = 0; face < level.GetNumFaces(); ++face) {
+        auto const values = level.GetFaceFVarValues(face, 0);
+        std::for_each(values.begin(), values.end(), add);
+    }
+    return corners;
+}
+
+Scene SmoothLevels::MakeScene() const {
+    Scene fine = _bisection ? MakeBisectedScene() : RefineAllButPositions(_scene, *_refiner);
+    if (!_keepsCreases) {
+        fine.cage.creaseVertexPairs.clear();
+        fine.cage.creaseSharpness.clear();
+        fine.cage.cornerVertices.clear();
+        fine.cage.cornerSharpness.clear();
+    }
+    return fine;
+}
+
+Scene SmoothLevels::MakeBisectedScene() const {
+    Scene fine;
+    fine.path = _scene.path;
+    fine.name = _scene.name;
+    fine.cage.scheme = _scene.cage.scheme;
+    fine.cage.options = _scene.cage.options;
+    fine.cage.numVertices = _mesh.numVertices;
+    fine.cage.faceVertices = _mesh.faces;
+    fine.cage.faceSizes.assign(static_cast<size_t>(_mesh.GetNumFaces()), 3);
+    for (auto const& crease : _mesh.creases) {
+        fine.cage.creaseVertexPairs.insert(fine.cage.creaseVertexPairs.end(), crease.begin(), crease.end());
+        fine.cage.creaseSharpness.push_back(far_ext::kInfiniteSharpness);
+    }
+    fine.cage.cornerVertices = _mesh.corners;
+    fine.cage.cornerSharpness.assign(_mesh.corners.size(), far_ext::kInfiniteSharpness);
+    if (_scene.HasUVs()) {
+        fine.uvs = _uvs;
+        fine.cage.fvarChannels.push_back({static_cast<Index>(_uvs.size() / 2), _bisection->GetFVarValues()});
+    }
+    fine.primvars = _primvars;
+    auto const& base = _bisection->GetBaseFaces();
+    std::vector<char> isHole(_scene.cage.faceSizes.size(), 0);
+    for (Index hole : _scene.cage.holes) isHole[hole] = 1;
+    for (size_t face = 0; face < base.size(); ++face) {
+        if (isHole[base[face]]) fine.cage.holes.push_back(static_cast<Index>(face));
+    }
+    InheritGroups(_scene, base, fine);
+    return fine;
+}
+
+}  // namespace limn::engine

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <opensubdiv/far/topologyRefiner.h>
+
+#include "engine/scene/scene.h"
+#include "far_ext/cascade/bisection.h"
+#include "far_ext/cascade/cascade_level.h"
+
+namespace limn::engine {
+
+enum class SmoothRefinement { Quadrisect, Bisect };
+
+/// A cascade's meshes, made level after level, with what hangs on their faces and corners.
+class SmoothLevels {
+public:
+    /// \param scene         kept by reference
+    /// \param keepsCreases  whether creases and corners split the filter, as long as their sharpness lasts; bisection keeps
+    ///                      infinitely sharp ones only
+    /// \throws Error        BadOption: bisection of faces that are no triangles.  As RefineUniformly
+    SmoothLevels(Scene const& scene, int numLevels, SmoothRefinement refinement, bool keepsCreases);
+
+    /// Makes the next level's mesh. \return it, until the next call
+    far_ext::CascadeMesh const& MakeNext();
+
+    /// The mesh made last; before that none.
+    far_ext::CascadeMesh const& GetMesh() const { return _mesh; }
+
+    /// Per face of the mesh made last: the face of the scene it lies in.
+    std::vector<Index> FindBaseFaces() const;
+
+    /// Texture coordinates of the mesh made last, 2 per corner of its faces. Needs a scene that has some.
+    std::vector<double> FindCornerUVs();
+
+    /// The last level as a scene, all but positions: topology, texture coordinates, groups, primvars, holes; creases and
+    /// corners only where they were kept.
+    Scene MakeScene() const;
+
+private:
+    Scene MakeBisectedScene() const;
+
+    Scene const& _scene;
+    SmoothRefinement _refinement;
+    bool _keepsCreases;
+    int _level = 0;
+    far_ext::CascadeMesh _mesh;
+    std::unique_ptr<Far::TopologyRefiner> _refiner;  // of one of these
+    std::optional<far_ext::Bisection> _bisection;
+    std::vector<double> _uvs;             // of the level's face-varying values
+    int _uvLevel = 0;
+    std::vector<Primvar> _primvars;       // of a bisected level
+};
+
+}  // namespace limn::engine

@@ -1,0 +1,3 @@
+#define LIMN_KERNEL avx2
+#define LIMN_KERNEL_LANES 8
+#include "eval/cascade/cascade_kernel.inc"

@@ -1,0 +1,3 @@
+#define LIMN_KERNEL avx512
+#define LIMN_KERNEL_LANES 16
+#include "eval/cascade/cascade_kernel.inc"

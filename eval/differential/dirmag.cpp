@@ -1,0 +1,113 @@
+#include "eval/differential/dirmag.h"
+
+#include <cmath>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <tbb/parallel_for.h>
+
+#include "far_ext/types.h"
+
+namespace limn::eval {
+
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+Vector Get(std::span<double const> values, Index i) {
+    double const* const p = values.data() + 3 * static_cast<size_t>(i);
+    return {p[0], p[1], p[2]};
+}
+
+void Set(std::vector<double>& values, Index i, Vector const& v) {
+    for (Index c = 0; c < 3; ++c) values[3 * static_cast<size_t>(i) + static_cast<size_t>(c)] = v[c];
+}
+
+/// The tangent at unit vector q along which the great circle to unit vector n runs, as long as the arc.
+Vector LogMap(Vector const& q, Vector const& n) {
+    Vector const across = n - n.dot(q) * q;
+    double const sine = across.norm();
+    return sine > 0.0 ? Vector(across * (std::atan2(sine, n.dot(q)) / sine)) : Vector::Zero();
+}
+
+Vector ExpMap(Vector const& q, Vector const& tangent) {
+    double const angle = tangent.norm();
+    return angle > 0.0 ? Vector(std::cos(angle) * q + std::sin(angle) / angle * tangent).normalized() : q;
+}
+
+/// The weighted mean on the sphere of a row's directions.
+Vector FindSphericalMean(far_ext::SparseRows const& rows, int row, std::span<double const> directions) {
+    Vector mean = Vector::Zero();
+    int largest = rows.offsets[row];
+    for (int k = rows.offsets[row]; k < rows.offsets[row + 1]; ++k) {
+        mean += rows.weights[k] * Get(directions, rows.indices[k]);
+        if (std::abs(rows.weights[k]) > std::abs(rows.weights[largest])) largest = k;
+    }
+    if (!(mean.norm() > 1e-12)) return Get(directions, rows.indices[largest]);
+    Vector q = mean.normalized();
+    for (int step = 0; step < 100; ++step) {
+        Vector sum = Vector::Zero();
+        for (int k = rows.offsets[row]; k < rows.offsets[row + 1]; ++k) {
+            sum += rows.weights[k] * LogMap(q, Get(directions, rows.indices[k]));
+        }
+        q = ExpMap(q, sum);
+        if (sum.norm() < 1e-14) break;
+    }
+    return q;
+}
+
+}  // namespace
+
+std::vector<double> FindAngleNormals(Far::TopologyLevel const& level, std::span<double const> positions) {
+    std::vector<double> normals(positions.size(), 0.0);
+    for (Index face = 0; face < level.GetNumFaces(); ++face) {
+        auto const vertices = level.GetFaceVertices(face);
+        int const size = vertices.size();
+        for (int i = 0; i < size; ++i) {
+            Vector const p = Get(positions, vertices[i]);
+            Vector const a = Get(positions, vertices[(i + 1) % size]) - p, b = Get(positions, vertices[(i + size - 1) % size]) - p;
+            Vector const across = a.cross(b);
+            double const sine = across.norm();
+            if (sine > 0.0) Set(normals, vertices[i], Get(normals, vertices[i]) + across * (std::atan2(sine, a.dot(b)) / sine));
+        }
+    }
+    for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
+        Vector const sum = Get(normals, vertex);
+        Set(normals, vertex, sum.norm() > 0.0 ? Vector(sum.normalized()) : Vector(0.0, 0.0, 1.0));
+    }
+    return normals;
+}
+
+DirMag SplitDirMag(Far::TopologyLevel const& level, std::span<double const> positions, std::span<double const> deltas) {
+    DirMag split{{}, FindAngleNormals(level, positions), 0.0};
+    double tangential = 0.0, all = 0.0;
+    for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
+        Vector const delta = Get(deltas, vertex), normal = Get(split.directions, vertex);
+        double const along = delta.dot(normal), length = delta.norm();
+        tangential += (delta - along * normal).squaredNorm();
+        all += delta.squaredNorm();
+        double const magnitude = along > 0.0 ? length : -length;
+        split.magnitudes.push_back(magnitude);
+        if (length > 0.0) Set(split.directions, vertex, delta / magnitude);
+    }
+    split.tangentialShare = all > 0.0 ? std::sqrt(tangential / all) : 0.0;
+    return split;
+}
+
+DirMag SubdivideDirMag(far_ext::SparseRows const& rows, DirMag const& coarse) {
+    DirMag fine{{}, {}, coarse.tangentialShare};
+    fine.magnitudes.resize(static_cast<size_t>(rows.GetNumRows()));
+    fine.directions.resize(3 * fine.magnitudes.size());
+    rows.Apply(coarse.magnitudes.data(), fine.magnitudes.data(), 1);
+    tbb::parallel_for(0, rows.GetNumRows(),
+                      [&](int row) { Set(fine.directions, row, FindSphericalMean(rows, row, coarse.directions)); });
+    return fine;
+}
+
+std::vector<double> JoinDirMag(DirMag const& split) {
+    std::vector<double> deltas = split.directions;
+    for (size_t i = 0; i < deltas.size(); ++i) deltas[i] *= split.magnitudes[i / 3];
+    return deltas;
+}
+
+}  // namespace limn::eval

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "eval/surface/limit_surface.h"
+#include "eval/forms/quad_form_patch.h"
+#include "eval/surface/refined_faces.h"
+#include "eval/forms/triangle_form_patch.h"
+#include "far_ext/topology/control_mesh.h"
+
+namespace limn::eval {
+
+/// The tangent vector field of a subdivided 1-form at any place of the limit surface: V = sum g^ab w(x_a) x_b with the
+/// limit's own tangents.
+///
+/// Exact    in regular faces, by QuadFormPatch and TriangleFormPatch.
+/// Else     next to extraordinary vertices, boundaries and creases: the exact vectors at the refined face's corners,
+///          blended and projected on the tangent plane.
+/// Threads  immutable once built; a Sampler per thread.
+/// Source   [Wang06] Sec. 4 and 5; forms.md 4 (regular quads), 7
+class FieldSurface {
+public:
+    /// \param refiner    unrefined topology of the cage
+    /// \param positions  3 per vertex of the cage
+    /// \param form       per edge of the cage
+    /// \param levels     refinements; 1 is done at least where faces are not all quads (Loop: triangles)
+    /// \throws Error     as far_ext::CheckForms; TooLarge: 2^31 indices
+    FieldSurface(far_ext::ControlMesh const& cage, std::span<double const> positions, std::span<double const> form, int levels);
+
+    class Sampler {
+    public:
+        explicit Sampler(FieldSurface const& field);
+
+        /// \param face     of the cage, with a limit; \param domain as in LimitSurface
+        /// \param vectors  one per place; 0 where the surface has no tangent plane
+        void Evaluate(Index face, int domain, std::span<double const> s, std::span<double const> t, std::span<Eigen::Vector3d> vectors);
+
+    private:
+        void Bind(Index face);
+        Eigen::Vector3d EvaluateHere(RefinedFaces::Place const& place);
+
+        FieldSurface const& _field;
+        FaceTree _tree;
+        std::vector<RefinedFaces::Sample> _places;
+        bool _isRegular = false;
+        QuadFormPatch _quad;          // one of these is of the
+        TriangleFormPatch _triangle;  // bound face, if it is regular
+    };
+
+private:
+    void FindVectors(Far::TopologyRefiner const& refiner);
+
+    far_ext::ControlMesh _cage;  // refined
+    std::vector<double> _positions, _form;
+    std::unique_ptr<Far::TopologyRefiner> _refiner;  // of the refined cage
+    std::unique_ptr<LimitSurface> _surface;
+    std::unique_ptr<RefinedFaces> _faces;
+    std::vector<Eigen::Vector3d> _vectors;  // at its vertices, where they are needed
+};
+
+}  // namespace limn::eval

@@ -1,3 +1,0 @@
-#define LIMN_KERNEL avx2
-#define LIMN_KERNEL_LANES 8
-#include "eval/stencil_kernel.inc"

@@ -1,3 +1,0 @@
-#define LIMN_KERNEL avx512
-#define LIMN_KERNEL_LANES 16
-#include "eval/stencil_kernel.inc"

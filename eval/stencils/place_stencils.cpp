@@ -1,0 +1,142 @@
+#include "eval/stencils/place_stencils.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include "far_ext/error.h"
+
+namespace limn::eval {
+
+namespace {
+
+Eigen::AlignedBox3d GetBounds(std::span<double const> positions) {
+    Eigen::AlignedBox3d box;
+    for (size_t i = 0; i < positions.size(); i += 3) box.extend(Eigen::Map<Eigen::Vector3d const>(&positions[i]));
+    return box;
+}
+
+}  // namespace
+
+PlaceStencils::PlaceStencils(LimitSurface const& surface, std::vector<SurfacePlace> places)
+    : _surface(surface), _places(std::move(places)), _rowOfPlace(_places.size(), -1) {
+    constexpr double kDeepest = 1 << kRowDepth;
+    FaceTree tree(surface, std::vector<FaceTree::Values>{});
+    Index bound = -1;
+    for (size_t i = 0; i < _places.size(); ++i) {
+        SurfacePlace const& place = _places[i];
+        if (!surface.HasLimit(place.face)) continue;
+        if (place.face != bound) tree.BindWeights(place.face);
+        bound = place.face;
+        PatchPoint const at = tree.Locate(place.domain, place.s, place.t, kRowDepth + 1);
+        if (at.isMoved || std::abs(at.scale) > kDeepest) continue;
+        _rowOfPlace[i] = static_cast<int>(_placeOfRow.size());
+        _placeOfRow.push_back(i);
+        AddRow(tree, at);
+    }
+}
+
+void PlaceStencils::AddRow(FaceTree const& tree, PatchPoint const& at) {
+    for (size_t point = 0; point < tree.GetPoints().size(); ++point) {
+        auto const weights = EvaluateDerivatives(tree, at, static_cast<int>(point));
+        if (std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 0.0; })) continue;
+        _indices.push_back(tree.GetPoints()[point]);
+        _weights.push_back(weights);
+    }
+    _offsets.push_back(_indices.size());
+}
+
+/// Relative to the row's first point: that costs no digits where the mesh is far from the origin.
+SurfaceDerivatives PlaceStencils::ApplyRow(size_t row, double const* positions) const {
+    SurfaceDerivatives d;
+    Eigen::Vector3d* const sums[] = {&d.position, &d.ds, &d.dt, &d.dss, &d.dst, &d.dtt};
+    for (Eigen::Vector3d* sum : sums) sum->setZero();
+    auto const pointAt = [&](size_t k) { return Eigen::Map<Eigen::Vector3d const>(positions + size_t{3} * _indices[k]); };
+    Eigen::Vector3d const origin = pointAt(_offsets[row]);
+    for (size_t k = _offsets[row]; k < _offsets[row + 1]; ++k) {
+        Eigen::Vector3d const point = pointAt(k) - origin;
+        for (int set = 0; set < far_ext::kMaxWeightSets; ++set) *sums[set] += _weights[k][set] * point;
+    }
+    d.position += origin;
+    return d;
+}
+
+/// \param accuracy  tangents shorter than this, relative to the mesh, or with an angle below it are not trusted
+/// \param derive    row -> SurfaceDerivatives
+template <class Derive>
+std::vector<SurfaceSample> PlaceStencils::EvaluateWith(std::span<double const> positions, double orientation,
+                                                       double accuracy, Derive const& derive) const {
+    std::vector<SurfaceSample> samples(_places.size());
+    double const shortest = accuracy * GetBounds(positions).diagonal().norm();
+    auto const isTrusted = [&](SurfaceDerivatives const& d) {
+        return d.ds.norm() > shortest && d.dt.norm() > shortest && HasTangentPlane(d, accuracy);
+    };
+    tbb::enumerable_thread_specific<FaceTree> trees([&] { return FaceTree(_surface, positions, 3); });
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, _places.size(), 256), [&](auto const& range) {
+        FaceTree* tree = nullptr;  // made where a place needs it
+        for (size_t i = range.begin(); i != range.end(); ++i) {
+            SurfacePlace const& place = _places[i];
+            if (!_surface.HasLimit(place.face)) continue;
+            if (_rowOfPlace[i] >= 0) {
+                SurfaceDerivatives const derivatives = derive(static_cast<size_t>(_rowOfPlace[i]));
+                if (isTrusted(derivatives)) {
+                    samples[i] = MakeSample(derivatives, orientation);
+                    continue;
+                }
+            }
+            if (!tree) tree = &trees.local();
+            tree->Bind(place.face);
+            samples[i] = EvaluateSample(*tree, place.domain, place.s, place.t, orientation);
+        }
+    });
+    return samples;
+}
+
+std::vector<SurfaceSample> PlaceStencils::Evaluate(std::span<double const> positions, double orientation) const {
+    return EvaluateWith(positions, orientation, 1e-7, [&](size_t row) { return ApplyRow(row, positions.data()); });
+}
+
+std::vector<SurfaceSample> PlaceStencils::Evaluate(std::span<double const> positions, double orientation,
+                                                   StencilEvaluator const& evaluator) const {
+    Eigen::Vector3d const centre = GetBounds(positions).center();
+    std::vector<float> source(positions.size());
+    for (size_t i = 0; i < source.size(); ++i) {
+        source[i] = static_cast<float>(positions[i] - centre[static_cast<Eigen::Index>(i % 3)]);
+        if (!std::isfinite(source[i])) throw Error(ErrorCode::BadMesh, "a position is too large for an evaluator in float");
+    }
+    Osd::BufferDescriptor const desc(0, 3, 3);
+    size_t const size = GetNumRows() * 3;
+    std::vector<float> results(size * far_ext::kMaxWeightSets);
+    SimdEvaluator::Targets targets;
+    for (int set = 0; set < far_ext::kMaxWeightSets; ++set) targets.push_back({results.data() + set * size, desc});
+    evaluator.EvalStencils(source.data(), desc, targets, 0, static_cast<Index>(GetNumRows()));
+    return EvaluateWith(positions, orientation, 1e-4, [&](size_t row) {
+        SurfaceDerivatives d;
+        Eigen::Vector3d* const sums[] = {&d.position, &d.ds, &d.dt, &d.dss, &d.dst, &d.dtt};
+        for (int set = 0; set < far_ext::kMaxWeightSets; ++set) {
+            for (int c = 0; c < 3; ++c) (*sums[set])[c] = results[set * size + row * 3 + c];
+        }
+        d.position += centre;
+        return d;
+    });
+}
+
+far_ext::StencilRows PlaceStencils::MakeRows() const {
+    Index const numVertices = _surface.GetRefiner().GetLevel(0).GetNumVertices();
+    far_ext::StencilRows rows(numVertices, far_ext::kMaxWeightSets);
+    float entry[far_ext::kMaxWeightSets];
+    for (size_t row = 0; row < GetNumRows(); ++row) {
+        for (size_t k = _offsets[row]; k < _offsets[row + 1]; ++k) {
+            for (int set = 0; set < far_ext::kMaxWeightSets; ++set) entry[set] = static_cast<float>(_weights[k][set]);
+            rows.AddEntry(_indices[k], entry);
+        }
+        rows.EndRow();
+    }
+    return rows;
+}
+
+}  // namespace limn::eval

@@ -1,0 +1,3 @@
+#define LIMN_KERNEL sse2
+#define LIMN_KERNEL_LANES 4
+#include "eval/stencils/stencil_kernel.inc"

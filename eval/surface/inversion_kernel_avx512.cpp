@@ -1,0 +1,2 @@
+#define LIMN_KERNEL avx512
+#include "eval/surface/inversion_kernel.inc"

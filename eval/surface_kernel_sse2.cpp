@@ -1,2 +1,0 @@
-#define LIMN_KERNEL sse2
-#include "eval/surface_kernel.inc"

@@ -1,0 +1,165 @@
+#include "far_ext/cascade/bisection.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <unordered_map>
+#include <utility>
+
+namespace limn::far_ext {
+
+namespace {
+
+/// Edges of triangles, numbered by first appearance.
+class EdgeNumbers {
+public:
+    Index Get(Index a, Index b) { return _numbers.try_emplace(Key(a, b), static_cast<Index>(_numbers.size())).first->second; }
+    Index Find(Index a, Index b) const {
+        auto const found = _numbers.find(Key(a, b));
+        return found == _numbers.end() ? -1 : found->second;
+    }
+    size_t GetCount() const { return _numbers.size(); }
+
+private:
+    static std::uint64_t Key(Index a, Index b) {
+        return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint64_t>(std::max(a, b));
+    }
+    std::unordered_map<std::uint64_t, Index> _numbers;
+};
+
+int FindLongestEdge(Index const* face, std::span<double const> positions) {
+    int longest = 0;
+    double best = -1.0;
+    std::array<Index, 2> bestPair{};
+    for (int k = 0; k < 3; ++k) {
+        Index const a = face[k], b = face[(k + 1) % 3];
+        std::array<Index, 2> const pair{std::min(a, b), std::max(a, b)};
+        double square = 0.0;
+        for (size_t c = 0; c < 3; ++c) {
+            double const d = positions[3 * static_cast<size_t>(pair[1]) + c] - positions[3 * static_cast<size_t>(pair[0]) + c];
+            square += d * d;
+        }
+        if (square < best || (square == best && bestPair < pair)) continue;
+        longest = k;
+        best = square;
+        bestPair = pair;
+    }
+    return longest;
+}
+
+/// A corner of a triangle: its vertex and face-varying value.
+struct Corner {
+    Index vertex, value;
+};
+
+/// What a pass makes.
+struct Halves {
+    std::vector<Index> const& middles;  // per edge: its new vertex, or -1
+    EdgeNumbers const& edges;
+    std::vector<Index>& faces;
+    std::vector<Index>& baseFaces;
+    std::vector<Index>* fvarValues;  // null without a channel
+    Index numFVarValues;
+    std::vector<std::array<Index, 2>>& fvarParents;
+    EdgeNumbers fvarEdges{};  // that are cut
+
+    /// Cuts a triangle whose refinement edge is (face[0], face[1]), and its halves. New triangles have their
+    /// refinement edge, opposite the newest vertex, first as well.
+    void Cut(std::array<Corner, 3> const& face, Index baseFace) {
+        Index const edge = edges.Find(face[0].vertex, face[1].vertex), middle = edge < 0 ? -1 : middles[edge];
+        if (middle < 0) {
+            for (Corner const& corner : face) {
+                faces.push_back(corner.vertex);
+                if (fvarValues) fvarValues->push_back(corner.value);
+            }
+            baseFaces.push_back(baseFace);
+            return;
+        }
+        Corner const cut{middle, fvarValues ? CutValue(face[0].value, face[1].value) : 0};
+        Cut({face[2], face[0], cut}, baseFace);
+        Cut({face[1], face[2], cut}, baseFace);
+    }
+
+private:
+    Index CutValue(Index a, Index b) {
+        Index const number = fvarEdges.Get(a, b);
+        if (static_cast<size_t>(number) == fvarParents.size()) fvarParents.push_back({a, b});
+        return numFVarValues + number;
+    }
+};
+
+}  // namespace
+
+Bisection::Bisection(Index numVertices, std::vector<Index> faces, std::span<double const> positions,
+                     std::vector<std::array<Index, 2>> creases, std::vector<Index> corners) {
+    _mesh.numVertices = numVertices;
+    _mesh.faces = std::move(faces);
+    _mesh.creases = std::move(creases);
+    _mesh.corners = std::move(corners);
+    for (Index face = 0; face < _mesh.GetNumFaces(); ++face) {
+        _refinementEdges.push_back(FindLongestEdge(&_mesh.faces[3 * static_cast<size_t>(face)], positions));
+        _baseFaces.push_back(face);
+    }
+}
+
+void Bisection::SetFVarChannel(Index numValues, std::vector<Index> values) {
+    _numFVarValues = numValues;
+    _fvarValues = std::move(values);
+}
+
+CascadeMesh const& Bisection::Refine() {
+    CascadeMesh const coarse = std::move(_mesh);
+    std::vector<Index> const coarseBaseFaces = std::move(_baseFaces);
+    EdgeNumbers edges;
+    std::vector<std::array<Index, 2>> ends;
+    for (size_t at = 0; at < coarse.faces.size(); at += 3) {
+        for (size_t k = 0; k < 3; ++k) {
+            Index const a = coarse.faces[at + k], b = coarse.faces[at + (k + 1) % 3];
+            if (static_cast<size_t>(edges.Get(a, b)) == ends.size()) ends.push_back({a, b});
+        }
+    }
+    std::vector<Index> middles(edges.GetCount(), -1);
+    for (size_t face = 0; face < _refinementEdges.size(); ++face) {
+        size_t const k = static_cast<size_t>(_refinementEdges[face]);
+        middles[edges.Get(coarse.faces[3 * face + k], coarse.faces[3 * face + (k + 1) % 3])] = 0;
+    }
+    _mesh = {};
+    _mesh.numVertices = coarse.numVertices;
+    for (Index i = 0; i < coarse.numVertices; ++i) {
+        _mesh.parents.push_back(i);
+        _mesh.parentOffsets.push_back(static_cast<int>(_mesh.parents.size()));
+    }
+    for (size_t edge = 0; edge < middles.size(); ++edge) {
+        if (middles[edge] < 0) continue;
+        middles[edge] = _mesh.numVertices++;
+        _mesh.parents.insert(_mesh.parents.end(), ends[edge].begin(), ends[edge].end());
+        _mesh.parentOffsets.push_back(static_cast<int>(_mesh.parents.size()));
+    }
+    _baseFaces.clear();
+    _numFVarValues += static_cast<Index>(_fvarParents.size());
+    _fvarParents.clear();
+    std::vector<Index> const coarseValues = std::move(_fvarValues);
+    _fvarValues.clear();
+    Halves halves{middles, edges, _mesh.faces, _baseFaces, coarseValues.empty() ? nullptr : &_fvarValues, _numFVarValues, _fvarParents};
+    for (size_t face = 0; face < _refinementEdges.size(); ++face) {
+        size_t const k = static_cast<size_t>(_refinementEdges[face]);
+        auto const corner = [&](size_t i) -> Corner {
+            size_t const at = 3 * face + (k + i) % 3;
+            return {coarse.faces[at], coarseValues.empty() ? 0 : coarseValues[at]};
+        };
+        halves.Cut({corner(0), corner(1), corner(2)}, coarseBaseFaces[face]);
+    }
+    _refinementEdges.assign(_baseFaces.size(), 0);
+    for (auto const& crease : coarse.creases) {
+        Index const edge = edges.Find(crease[0], crease[1]), middle = edge < 0 ? -1 : middles[edge];
+        if (middle < 0) {
+            _mesh.creases.push_back(crease);
+        } else {
+            _mesh.creases.push_back({crease[0], middle});
+            _mesh.creases.push_back({middle, crease[1]});
+        }
+    }
+    _mesh.corners = coarse.corners;
+    return _mesh;
+}
+
+}  // namespace limn::far_ext

@@ -1,0 +1,239 @@
+#include "far_ext/cascade/cascade_level.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "far_ext/error.h"
+#include "far_ext/rows/large_array.h"
+
+namespace limn::far_ext {
+
+namespace {
+
+enum class RowKind : char { Closed, Open, Crease, Fixed };
+
+[[noreturn]] void ThrowNoDisc(Index vertex) {
+    throw Error(ErrorCode::BadMesh, fmt::format("the faces at vertex {} are no disc of one orientation; edges must have 1 or 2 "
+                                                "faces that run through them in opposite directions",
+                                                vertex));
+}
+
+/// Rings of all vertices in the public order.
+struct Rings {
+    LargeArray<int> offsets{0};
+    LargeArray<Index> neighbours;
+    std::vector<RowKind> kinds;
+};
+
+/// A face's corner at a vertex: next and previous vertex of the face, and the opposite one of a quad.
+struct Corner {
+    Index next, previous, opposite;
+};
+
+/// Puts the corners at a vertex in order, each one's `previous` being the following one's `next`.
+/// \return whether the ring is closed
+bool OrderCorners(Index vertex, std::span<Corner> corners) {
+    auto const first = std::find_if(corners.begin(), corners.end(), [&](Corner const& c) {
+        return std::none_of(corners.begin(), corners.end(), [&](Corner const& d) { return d.previous == c.next; });
+    });
+    bool const isClosed = first == corners.end();
+    if (!isClosed) std::swap(corners.front(), *first);
+    for (size_t k = 0; k < corners.size(); ++k) {
+        if (corners[k].next == corners[k].previous) ThrowNoDisc(vertex);
+        if (k + 1 == corners.size()) break;
+        auto const from = corners.begin() + static_cast<std::ptrdiff_t>(k) + 1;
+        auto const found = std::find_if(from, corners.end(), [&](Corner const& c) { return c.next == corners[k].previous; });
+        if (found == corners.end()) ThrowNoDisc(vertex);
+        std::swap(*from, *found);
+    }
+    Index const last = corners.back().previous;
+    bool const returns = std::any_of(corners.begin(), corners.end(), [&](Corner const& c) { return c.next == last; });
+    if (isClosed ? last != corners.front().next : returns) ThrowNoDisc(vertex);
+    return isClosed;
+}
+
+Rings FindRings(CascadeMesh const& mesh, BoundaryRule rule) {
+    size_t const numVertices = static_cast<size_t>(mesh.numVertices), n = static_cast<size_t>(mesh.faceSize);
+    LargeArray<int> begins(numVertices + 1, 0);
+    for (Index vertex : mesh.faces) ++begins[static_cast<size_t>(vertex) + 1];
+    for (size_t i = 0; i < numVertices; ++i) begins[i + 1] += begins[i];
+    LargeArray<Corner> corners(mesh.faces.size());
+    LargeArray<int> fill(begins.begin(), begins.end() - 1);
+    for (size_t face = 0; face < mesh.faces.size(); face += n) {
+        Index const* const f = &mesh.faces[face];
+        Index previous = f[n - 1], own = f[0], next = f[1];
+        for (size_t k = 0; k < n; ++k) {
+            Index const opposite = f[k + 2 < n ? k + 2 : k + 2 - n];
+            corners[static_cast<size_t>(fill[own]++)] = {next, previous, opposite};
+            previous = own;
+            own = next;
+            next = opposite;
+        }
+    }
+    Rings rings;
+    rings.kinds.resize(numVertices);
+    rings.offsets.reserve(numVertices + 1);
+    rings.neighbours.reserve(corners.size() * (n - 2) + numVertices / 8);
+    for (size_t i = 0; i < numVertices; ++i) {
+        std::span<Corner> const own(corners.data() + begins[i], static_cast<size_t>(begins[i + 1] - begins[i]));
+        if (own.empty()) {
+            rings.kinds[i] = RowKind::Fixed;
+        } else {
+            bool const isClosed = OrderCorners(static_cast<Index>(i), own);
+            for (Corner const& corner : own) {
+                rings.neighbours.push_back(corner.next);
+                if (n == 4) rings.neighbours.push_back(corner.opposite);
+            }
+            if (!isClosed) rings.neighbours.push_back(own.back().previous);
+            rings.kinds[i] = isClosed ? RowKind::Closed : rule == BoundaryRule::Fixed ? RowKind::Fixed : RowKind::Open;
+        }
+        if (rings.neighbours.size() > static_cast<size_t>(std::numeric_limits<int>::max())) {
+            throw Error(ErrorCode::TooLarge, "the cascade's level has more than 2^31 neighbours; use fewer levels");
+        }
+        rings.offsets.push_back(static_cast<int>(rings.neighbours.size()));
+    }
+    return rings;
+}
+
+/// Marks rows on creases. A crease that ends within the surface leaves its end smooth; where creases meet, or meet a
+/// boundary, the vertex stays.
+/// \return per vertex its two neighbours along a crease
+std::vector<std::array<Index, 2>> SplitAtCreases(CascadeMesh const& mesh, Rings& rings) {
+    std::vector<std::array<Index, 2>> along(mesh.creases.empty() ? 0 : static_cast<size_t>(mesh.numVertices), {-1, -1});
+    std::vector<int> counts(along.size(), 0);
+    for (auto const& edge : mesh.creases) {
+        for (size_t end = 0; end < 2; ++end) {
+            int const count = counts[edge[end]]++;
+            if (count < 2) along[edge[end]][static_cast<size_t>(count)] = edge[1 - end];
+        }
+    }
+    for (size_t i = 0; i < counts.size(); ++i) {
+        RowKind& kind = rings.kinds[i];
+        if (kind == RowKind::Open && counts[i] > 0) kind = RowKind::Fixed;
+        if (kind == RowKind::Closed && counts[i] > 1) kind = counts[i] == 2 ? RowKind::Crease : RowKind::Fixed;
+    }
+    for (Index vertex : mesh.corners) rings.kinds[vertex] = RowKind::Fixed;
+    return along;
+}
+
+LargeArray<Index> OrderBreadthFirst(Rings const& rings) {
+    LargeArray<Index> order;
+    std::vector<char> isSeen(rings.kinds.size(), 0);
+    order.reserve(isSeen.size());
+    for (Index start = 0; start < static_cast<Index>(isSeen.size()); ++start) {
+        if (isSeen[start]) continue;
+        isSeen[start] = 1;
+        order.push_back(start);
+        for (size_t at = order.size() - 1; at < order.size(); ++at) {
+            for (int k = rings.offsets[order[at]]; k < rings.offsets[order[at] + 1]; ++k) {
+                Index const other = rings.neighbours[k];
+                if (isSeen[other]) continue;
+                isSeen[other] = 1;
+                order.push_back(other);
+            }
+        }
+    }
+    return order;
+}
+
+LargeArray<Index> Invert(std::span<Index const> vertices) {
+    LargeArray<Index> rows(vertices.size());
+    for (size_t row = 0; row < vertices.size(); ++row) rows[vertices[row]] = static_cast<Index>(row);
+    return rows;
+}
+
+Index FindBandwidth(CascadeLevel const& level) {
+    Index largest = 0;
+    for (Index row = 0; row < level.numUnknowns; ++row) {
+        for (int k = level.offsets[row]; k < level.offsets[row + 1]; ++k) {
+            Index const other = level.neighbours[k];
+            if (other < level.numUnknowns) largest = std::max(largest, std::abs(other - row));
+        }
+    }
+    return largest;
+}
+
+}  // namespace
+
+CascadeLevel BuildCascadeLevel(CascadeMesh const& mesh, std::span<Index const> coarseVertices, BoundaryRule rule) {
+    Rings rings = FindRings(mesh, rule);
+    auto const along = SplitAtCreases(mesh, rings);
+    auto const order = OrderBreadthFirst(rings);
+    CascadeLevel level;
+    level.faceSize = mesh.faceSize;
+    level.vertices.reserve(order.size());
+    std::array<Index, 4> ends{};
+    for (RowKind kind : {RowKind::Closed, RowKind::Open, RowKind::Crease, RowKind::Fixed}) {
+        std::copy_if(order.begin(), order.end(), std::back_inserter(level.vertices),
+                     [&](Index vertex) { return rings.kinds[vertex] == kind; });
+        ends[static_cast<size_t>(kind)] = level.GetNumRows();
+    }
+    level.numClosed = ends[0];
+    level.numSurface = ends[1];
+    level.numUnknowns = ends[2];
+
+    LargeArray<Index> const rows = Invert(level.vertices), coarseRows = Invert(coarseVertices);
+    level.offsets.reserve(static_cast<size_t>(level.numUnknowns) + 1);
+    level.offsets.push_back(0);
+    level.neighbours.reserve(rings.neighbours.size());
+    level.parentOffsets.reserve(order.size() + 1);
+    level.parentOffsets.push_back(0);
+    level.parents.reserve(mesh.parents.size());
+    for (Index row = 0; row < level.GetNumRows(); ++row) {
+        Index const vertex = level.vertices[row];
+        if (row < level.numSurface) {
+            for (int k = rings.offsets[vertex]; k < rings.offsets[vertex + 1]; ++k) level.neighbours.push_back(rows[rings.neighbours[k]]);
+        } else if (row < level.numUnknowns) {
+            for (Index other : along[vertex]) level.neighbours.push_back(rows[other]);
+        }
+        if (row < level.numUnknowns) level.offsets.push_back(static_cast<int>(level.neighbours.size()));
+        for (int k = mesh.parentOffsets[vertex]; k < mesh.parentOffsets[vertex + 1]; ++k) {
+            level.parents.push_back(coarseRows.empty() ? mesh.parents[k] : coarseRows[mesh.parents[k]]);
+        }
+        level.parentOffsets.push_back(static_cast<int>(level.parents.size()));
+    }
+    level.bandwidth = FindBandwidth(level);
+    return level;
+}
+
+CascadeMesh MakeCascadeMesh(Far::TopologyRefiner const& refiner, int level) {
+    auto const coarse = refiner.GetLevel(level - 1), fine = refiner.GetLevel(level);
+    CascadeMesh mesh;
+    mesh.numVertices = fine.GetNumVertices();
+    mesh.faceSize = refiner.GetSchemeType() == Sdc::SCHEME_LOOP ? 3 : 4;
+    mesh.faces.reserve(static_cast<size_t>(fine.GetNumFaceVertices()));
+    for (Index face = 0; face < fine.GetNumFaces(); ++face) {
+        auto const vertices = fine.GetFaceVertices(face);
+        mesh.faces.insert(mesh.faces.end(), vertices.begin(), vertices.end());
+    }
+    enum : char { FromVertex, FromEdge, FromFace };
+    std::vector<std::pair<char, Index>> sources(static_cast<size_t>(mesh.numVertices));
+    for (Index i = 0; i < coarse.GetNumVertices(); ++i) sources[coarse.GetVertexChildVertex(i)] = {FromVertex, i};
+    for (Index i = 0; i < coarse.GetNumEdges(); ++i) sources[coarse.GetEdgeChildVertex(i)] = {FromEdge, i};
+    for (Index i = 0; mesh.faceSize == 4 && i < coarse.GetNumFaces(); ++i) sources[coarse.GetFaceChildVertex(i)] = {FromFace, i};
+    for (auto const& [kind, source] : sources) {
+        if (kind == FromVertex) {
+            mesh.parents.push_back(source);
+        } else {
+            auto const vertices = kind == FromEdge ? coarse.GetEdgeVertices(source) : coarse.GetFaceVertices(source);
+            mesh.parents.insert(mesh.parents.end(), vertices.begin(), vertices.end());
+        }
+        mesh.parentOffsets.push_back(static_cast<int>(mesh.parents.size()));
+    }
+    for (Index edge = 0; edge < fine.GetNumEdges(); ++edge) {
+        if (fine.GetEdgeSharpness(edge) <= 0.0f || fine.IsEdgeBoundary(edge)) continue;
+        auto const ends = fine.GetEdgeVertices(edge);
+        mesh.creases.push_back({ends[0], ends[1]});
+    }
+    for (Index vertex = 0; vertex < fine.GetNumVertices(); ++vertex) {
+        if (fine.GetVertexSharpness(vertex) > 0.0f && !fine.IsVertexBoundary(vertex)) mesh.corners.push_back(vertex);
+    }
+    return mesh;
+}
+
+}  // namespace limn::far_ext

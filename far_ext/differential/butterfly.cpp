@@ -1,0 +1,126 @@
+#include "far_ext/differential/butterfly.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "far_ext/error.h"
+#include "far_ext/differential/laplacian.h"
+
+namespace limn::far_ext {
+
+namespace {
+
+using Level = Far::TopologyLevel;
+constexpr double kPi = 3.14159265358979323846;
+
+class ButterflyRows {
+public:
+    explicit ButterflyRows(Level const& coarse) : _coarse(coarse) {}
+
+    /// The row of an edge's new vertex.
+    WeightRow Make(Index edge) const {
+        auto const ends = _coarse.GetEdgeVertices(edge);
+        WeightRow row;
+        if (_coarse.IsEdgeBoundary(edge)) {
+            AddBoundaryRow(edge, row);
+            return row;
+        }
+        bool const isFirst = IsIrregular(ends[0]), isSecond = IsIrregular(ends[1]);
+        if (!isFirst && !isSecond) {
+            AddRegularRow(edge, row);
+            return row;
+        }
+        double const share = isFirst && isSecond ? 0.5 : 1.0;
+        if (isFirst) AddIrregularEnd(ends[0], edge, share, row);
+        if (isSecond) AddIrregularEnd(ends[1], edge, share, row);
+        return row;
+    }
+
+private:
+    /// Vertices of a boundary count as regular.
+    bool IsIrregular(Index vertex) const {
+        return !_coarse.IsVertexBoundary(vertex) && _coarse.GetVertexEdges(vertex).size() != 6;
+    }
+
+    void AddBoundaryRow(Index edge, WeightRow& row) const {
+        for (Index end : _coarse.GetEdgeVertices(edge)) {
+            row.Add(end, 9.0 / 16);
+            for (Index other : _coarse.GetVertexEdges(end)) {
+                if (other != edge && _coarse.IsEdgeBoundary(other)) row.Add(GetOtherEnd(_coarse, other, end), -1.0 / 16);
+            }
+        }
+    }
+
+    void AddRegularRow(Index edge, WeightRow& row) const {
+        for (Index end : _coarse.GetEdgeVertices(edge)) row.Add(end, 0.5);
+        for (Index face : _coarse.GetEdgeFaces(edge)) {
+            row.Add(FindOpposite(face, edge), 1.0 / 8);
+            for (Index side : _coarse.GetFaceEdges(face)) {
+                if (side != edge) AddWing(face, side, -1.0 / 16, row);
+            }
+        }
+    }
+
+    /// The vertex across `side` from `face`, or across a boundary its reflection.
+    void AddWing(Index face, Index side, double weight, WeightRow& row) const {
+        for (Index other : _coarse.GetEdgeFaces(side)) {
+            if (other != face) return row.Add(FindOpposite(other, side), weight);
+        }
+        for (Index end : _coarse.GetEdgeVertices(side)) row.Add(end, weight);
+        row.Add(FindOpposite(face, side), -weight);
+    }
+
+    void AddIrregularEnd(Index vertex, Index edge, double share, WeightRow& row) const {
+        auto const edges = _coarse.GetVertexEdges(vertex);  // in order round an inner vertex
+        int const valence = edges.size(), start = edges.FindIndex(edge);
+        row.Add(vertex, 0.75 * share);
+        for (int j = 0; j < valence; ++j) {
+            Index const neighbour = GetOtherEnd(_coarse, edges[(start + j) % valence], vertex);
+            row.Add(neighbour, share * RingWeight(valence, j));
+        }
+    }
+
+    static double RingWeight(int valence, int j) {
+        constexpr double kThree[] = {5.0 / 12, -1.0 / 12, -1.0 / 12}, kFour[] = {3.0 / 8, 0.0, -1.0 / 8, 0.0};
+        if (valence == 3) return kThree[j];
+        if (valence == 4) return kFour[j];
+        double const angle = 2.0 * kPi * j / valence;
+        return (0.25 + std::cos(angle) + 0.5 * std::cos(2.0 * angle)) / valence;
+    }
+
+    Index FindOpposite(Index face, Index edge) const {
+        auto const ends = _coarse.GetEdgeVertices(edge);
+        for (Index vertex : _coarse.GetFaceVertices(face)) {
+            if (vertex != ends[0] && vertex != ends[1]) return vertex;
+        }
+        throw Error(ErrorCode::BadMesh, fmt::format("face {} repeats a vertex; a triangle has three", face));
+    }
+
+    Level const& _coarse;
+};
+
+}  // namespace
+
+SparseRows BuildButterfly(Far::TopologyRefiner const& refiner, int level) {
+    Level const coarse = refiner.GetLevel(level - 1);
+    CheckBoundary(coarse);
+    for (Index edge = 0; edge < coarse.GetNumEdges(); ++edge) {
+        int const count = coarse.GetEdgeFaces(edge).size();
+        if (count <= 2 && !coarse.IsEdgeNonManifold(edge)) continue;
+        throw Error(ErrorCode::BadMesh, fmt::format("edge {} has {} faces; Butterfly needs 1 or 2, wound alike", edge, count));
+    }
+    // OpenSubdiv's order of a Loop refinement: vertices first, then edges.
+    SparseRows rows;
+    WeightRow row;
+    for (Index vertex = 0; vertex < coarse.GetNumVertices(); ++vertex) {
+        row.Clear();
+        row.Add(vertex, 1.0);
+        rows.AddRow(row);
+    }
+    ButterflyRows const butterfly(coarse);
+    for (Index edge = 0; edge < coarse.GetNumEdges(); ++edge) rows.AddRow(butterfly.Make(edge));
+    return rows;
+}
+
+}  // namespace limn::far_ext

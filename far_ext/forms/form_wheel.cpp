@@ -1,0 +1,265 @@
+#include "far_ext/forms/form_wheel.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace limn::far_ext {
+
+namespace {
+
+using Chain = std::vector<double>;  // over the wheel's faces, or over its edges
+
+constexpr double kPi = std::numbers::pi;
+
+/// The circulant whose rows spread a 2-form over the corners of `count` faces round a vertex: forms.md 3.4 (Loop), 4
+/// (Doo-Sabin's weights).
+std::vector<double> MakeCirculant(Sdc::SchemeType scheme, int count) {
+    std::vector<double> c(static_cast<size_t>(count), 0.0);
+    if (scheme == Sdc::SCHEME_CATMARK) {
+        c[0] = (count + 5.0) / (4.0 * count);
+        for (int m = 1; m < count; ++m) c[static_cast<size_t>(m)] = (3.0 + 2.0 * std::cos(2.0 * kPi * m / count)) / (4.0 * count);
+        return c;
+    }
+    double const beta = count >= 6 ? 0.25 : 1.0 / (8.0 * (1.0 - std::cos(2.0 * kPi / count)));
+    auto const add = [&](int place, double weight) { c[static_cast<size_t>(((place % count) + count) % count)] += weight; };
+    add(0, 0.75 - beta);
+    for (int sign : {-1, 1}) {
+        add(sign, 0.125);
+        add(2 * sign, 0.5 * beta);
+    }
+    return c;
+}
+
+/// Spokes at which a rule cuts the wheel into fans; none if it is in one piece.
+std::vector<int> FindCuts(Wheel const& wheel, Wheel::Rule const& rule) {
+    std::vector<int> cuts;
+    int const last = wheel.GetNumSpokes() - 1;
+    for (int i = 0; i <= last; ++i) {
+        bool const isBorder = !wheel.isInterior && (i == 0 || i == last);
+        if (isBorder || rule.isSharp[static_cast<size_t>(i)]) cuts.push_back(i);
+    }
+    if (cuts.size() < 2) cuts.clear();
+    return cuts;
+}
+
+/// Adds one rule's share of s and mu. The products mu D are blended, not mu and D: only so do the columns of s add up to
+/// mu where faces differ in it, and the recursion for x closes.
+void AddShares(Sdc::SchemeType scheme, Wheel const& wheel, Wheel::Rule const& rule, std::vector<Chain>& spread, Chain& mu) {
+    int const k = wheel.GetNumFaces();
+    bool const isLoop = scheme == Sdc::SCHEME_LOOP;
+    auto const add = [&](int row, int column, double rowMu, double weight) {
+        double const scale = isLoop ? rowMu : 1.0 / wheel.sizes[static_cast<size_t>(column)];
+        spread[static_cast<size_t>(row)][static_cast<size_t>(column)] += rule.share * scale * weight;
+    };
+    std::vector<int> const cuts = FindCuts(wheel, rule);
+    if (cuts.empty()) {
+        std::vector<double> const c = MakeCirculant(scheme, k);
+        double const rowMu = k == 3 ? 1.0 / 16.0 : 0.25;
+        for (int i = 0; i < k; ++i) {
+            for (int j = 0; j < k; ++j) add(i, j, rowMu, c[static_cast<size_t>((j - i + k) % k)]);
+            mu[static_cast<size_t>(i)] += rule.share * rowMu;
+        }
+        return;
+    }
+    size_t const numFans = wheel.isInterior ? cuts.size() : cuts.size() - 1;
+    for (size_t fan = 0; fan < numFans; ++fan) {
+        int const first = cuts[fan];
+        int const size = fan + 1 < cuts.size() ? cuts[fan + 1] - first : cuts[0] + k - first;
+        std::vector<double> const c = MakeCirculant(scheme, 2 * size);  // reflected in both borders
+        double const rowMu = size == 1 && rule.isCrease ? 0.125 : 0.25;
+        for (int i = 0; i < size; ++i) {
+            int const row = (first + i) % k;
+            for (int j = 0; j < size; ++j) {
+                add(row, (first + j) % k, rowMu, c[static_cast<size_t>((j - i + 2 * size) % (2 * size))] + c[static_cast<size_t>((i + j + 1) % (2 * size))]);
+            }
+            mu[static_cast<size_t>(row)] += rule.share * rowMu;
+        }
+    }
+}
+
+/// Takes out of all x their mean over the spokes where a rule wants none: its cuts, or all spokes.
+void Centre(Wheel const& wheel, std::vector<Chain>& flow) {
+    Chain mean(flow[0].size(), 0.0);
+    for (Wheel::Rule const* rule : {&wheel.parent, &wheel.child}) {
+        if (rule->share == 0.0) continue;
+        std::vector<int> spokes = FindCuts(wheel, *rule);
+        if (spokes.empty()) {
+            for (int i = 0; i < wheel.GetNumSpokes(); ++i) spokes.push_back(i);
+        }
+        for (int i : spokes) {
+            for (size_t j = 0; j < mean.size(); ++j) mean[j] += rule->share * flow[static_cast<size_t>(i)][j] / static_cast<double>(spokes.size());
+        }
+    }
+    for (Chain& x : flow) {
+        for (size_t j = 0; j < mean.size(); ++j) x[j] -= mean[j];
+    }
+}
+
+/// A 1-chain on the wheel in the making.
+class EdgeChain {
+public:
+    explicit EdgeChain(Wheel const& wheel) : _wheel(wheel) {
+        int next = wheel.GetNumSpokes();
+        for (int size : wheel.sizes) {
+            _firstOuterSides.push_back(next);
+            next += size - 2;
+        }
+        _weights.assign(static_cast<size_t>(next), 0.0);
+    }
+
+    void AddSpoke(int spoke, double weight) {
+        int const count = _wheel.GetNumSpokes();
+        _weights[static_cast<size_t>(((spoke % count) + count) % count)] += weight;
+    }
+
+    /// Side m of a face, counter-clockwise from the spoke before it.
+    void AddSide(int face, int m, double weight) {
+        int const k = _wheel.GetNumFaces();
+        face = ((face % k) + k) % k;
+        int const size = _wheel.sizes[static_cast<size_t>(face)];
+        if (m == 0) AddSpoke(face, weight);
+        else if (m == size - 1) AddSpoke(face + 1, -weight);
+        else _weights[static_cast<size_t>(_firstOuterSides[static_cast<size_t>(face)] + m - 1)] += weight;
+    }
+
+    void AddBoundary(Chain const& faces) {
+        for (int face = 0; face < _wheel.GetNumFaces(); ++face) {
+            double const weight = faces[static_cast<size_t>(face)];
+            for (int m = 0; weight != 0.0 && m < _wheel.sizes[static_cast<size_t>(face)]; ++m) AddSide(face, m, weight);
+        }
+    }
+
+    /// F(e, f) of forms.md 4, from the middle of side `from` to the centroid.
+    void AddPathFromMiddle(int face, int from, double weight) {
+        int const k = _wheel.GetNumFaces(), size = _wheel.sizes[static_cast<size_t>(((face % k) + k) % k)];
+        for (int j = 1; j < size; ++j) AddSide(face, (from + j) % size, weight * (0.5 - static_cast<double>(j) / size));
+    }
+
+    /// G(v, f): from the vertex to the centroid.
+    void AddPathFromCorner(int face, double weight) {
+        int const size = _wheel.sizes[static_cast<size_t>(face)];
+        for (int j = 0; j < size; ++j) AddSide(face, j, weight * (size - 1 - 2 * j) / (2.0 * size));
+    }
+
+    WheelRows::Row Get() const { return Compress(_weights); }
+
+    static WheelRows::Row Compress(std::vector<double> const& weights) {
+        WheelRows::Row row;
+        for (size_t i = 0; i < weights.size(); ++i) {
+            if (std::abs(weights[i]) >= 1e-15) row.emplace_back(static_cast<int>(i), weights[i]);
+        }
+        return row;
+    }
+
+private:
+    Wheel const& _wheel;
+    std::vector<int> _firstOuterSides;  // per face, among the wheel's edges
+    std::vector<double> _weights;
+};
+
+/// y_i: the curl part of the odd edge that cuts the corner of face i.
+Chain MakeOddCurl(Wheel const& wheel, Chain const& mu, int i) {
+    int const k = wheel.GetNumFaces(), spokes = wheel.GetNumSpokes();
+    double const before = wheel.faceShares[static_cast<size_t>(i)], after = wheel.faceShares[static_cast<size_t>((i + 1) % spokes)];
+    Chain y(static_cast<size_t>(k), 0.0);
+    y[static_cast<size_t>(i)] += mu[static_cast<size_t>(i)] - 0.25 * (before + after);
+    if (before != 0.0) y[static_cast<size_t>((i + k - 1) % k)] += 0.25 * before;
+    if (after != 0.0) y[static_cast<size_t>((i + 1) % k)] += 0.25 * after;
+    return y;
+}
+
+/// Adds S0 of the middle of spoke i, less the part of the vertex itself: p at both neighbours, 1/2 - p at w_i.
+void AddMiddle(Wheel const& wheel, int i, double sign, EdgeChain& chain) {
+    int const spokes = wheel.GetNumSpokes(), spoke = i % spokes;
+    double const p = wheel.faceShares[static_cast<size_t>(spoke)];
+    chain.AddSpoke(spoke, sign * (0.5 - p));
+    if (p == 0.0) return;
+    chain.AddSpoke(spoke - 1, sign * p);
+    chain.AddSpoke(spoke + 1, sign * p);
+}
+
+EdgeChain MakeLoopEven(Wheel const& wheel, int i) {
+    EdgeChain chain(wheel);
+    AddMiddle(wheel, i, 1.0, chain);
+    for (int j = 0; j < wheel.GetNumSpokes(); ++j) chain.AddSpoke(j, -wheel.edgeWeights[static_cast<size_t>(j)]);
+    return chain;
+}
+
+EdgeChain MakeCatmarkEven(Wheel const& wheel, int i) {
+    EdgeChain chain(wheel);
+    double const q = wheel.faceShares[static_cast<size_t>(i)];
+    chain.AddSpoke(i, 0.5);
+    if (q != 0.0) {
+        int const k = wheel.GetNumFaces();
+        int const before = (i + k - 1) % k;
+        chain.AddPathFromMiddle(i, 0, q);
+        chain.AddPathFromMiddle(before, wheel.sizes[static_cast<size_t>(before)] - 1, q);
+    }
+    for (int j = 0; j < wheel.GetNumSpokes(); ++j) chain.AddSpoke(j, -wheel.edgeWeights[static_cast<size_t>(j)]);
+    for (int j = 0; wheel.faceWeight != 0.0 && j < wheel.GetNumFaces(); ++j) chain.AddPathFromCorner(j, -wheel.faceWeight);
+    return chain;
+}
+
+}  // namespace
+
+double GetLoopWeight(int k) {
+    double const c = 0.375 + 0.25 * std::cos(2.0 * kPi / k);
+    return k == 6 ? 0.0625 : (0.625 - c * c) / k;
+}
+
+Wheel MakeSmoothWheel(Sdc::SchemeType scheme, int k) {
+    bool const isLoop = scheme == Sdc::SCHEME_LOOP;
+    size_t const count = static_cast<size_t>(k);
+    Wheel wheel;
+    wheel.sizes.assign(count, isLoop ? 3 : 4);
+    wheel.faceShares.assign(count, isLoop ? 0.125 : 0.25);
+    wheel.edgeWeights.assign(count, isLoop ? GetLoopWeight(k) : 1.0 / (static_cast<double>(k) * k));
+    wheel.faceWeight = isLoop ? 0.0 : 1.0 / (static_cast<double>(k) * k);
+    wheel.parent = {1.0, std::vector<char>(count, 0), false};
+    wheel.child = {0.0, std::vector<char>(count, 0), false};
+    return wheel;
+}
+
+WheelRows MakeWheelRows(Sdc::SchemeType scheme, Wheel const& wheel) {
+    bool const isLoop = scheme == Sdc::SCHEME_LOOP;
+    int const numFaces = wheel.GetNumFaces(), numSpokes = wheel.GetNumSpokes();
+    size_t const k = static_cast<size_t>(numFaces);
+    WheelRows rows;
+    rows.mu.assign(k, 0.0);
+    rows.share.assign(k, Chain(k, 0.0));
+    AddShares(scheme, wheel, wheel.parent, rows.share, rows.mu);
+    if (wheel.child.share != 0.0) AddShares(scheme, wheel, wheel.child, rows.share, rows.mu);
+
+    // s from D, y, and x by the recursion x_{i+1} - x_i = y_i - s_i.
+    std::vector<Chain> curls;
+    rows.flow.assign(1, Chain(k, 0.0));
+    for (int i = 0; i < numFaces; ++i) {
+        Chain const& s = rows.share[static_cast<size_t>(i)];
+        Chain y(k, 0.0);
+        if (isLoop) y = MakeOddCurl(wheel, rows.mu, i);
+        else y[static_cast<size_t>(i)] = 1.0 / wheel.sizes[static_cast<size_t>(i)];
+        Chain next = rows.flow.back();
+        for (size_t j = 0; j < k; ++j) next[j] += y[j] - s[j];
+        rows.children.push_back(EdgeChain::Compress(s));
+        curls.push_back(std::move(y));
+        if (i + 1 < numSpokes) rows.flow.push_back(std::move(next));
+    }
+    if (wheel.isInterior) Centre(wheel, rows.flow);
+    else rows.flow.back().assign(k, 0.0);  // which it is, but for rounding
+
+    for (int i = 0; i < numSpokes; ++i) {
+        EdgeChain chain = isLoop ? MakeLoopEven(wheel, i) : MakeCatmarkEven(wheel, i);
+        chain.AddBoundary(rows.flow[static_cast<size_t>(i)]);
+        rows.even.push_back(chain.Get());
+    }
+    for (int i = 0; isLoop && i < numFaces; ++i) {
+        EdgeChain chain(wheel);
+        AddMiddle(wheel, i + 1, 1.0, chain);
+        AddMiddle(wheel, i, -1.0, chain);
+        chain.AddBoundary(curls[static_cast<size_t>(i)]);
+        rows.odd.push_back(chain.Get());
+    }
+    return rows;
+}
+
+}  // namespace limn::far_ext

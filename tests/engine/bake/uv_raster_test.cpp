@@ -1,0 +1,180 @@
+#include "engine/bake/uv_raster.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "far_ext/topology/refiner.h"
+#include "support/meshes.h"
+
+namespace limn {
+namespace {
+
+using engine::TexelBand;
+using engine::TileGrid;
+using engine::UVRaster;
+
+/// A plane of n x n quads whose UVs are its own x and y, scaled to [low, high].
+engine::Scene MakePlane(int n, double low, double high) {
+    std::vector<double> positions, uvs;
+    std::vector<std::vector<Index>> faces;
+    std::vector<Index> values;
+    for (int j = 0; j <= n; ++j) {
+        for (int i = 0; i <= n; ++i) {
+            positions.insert(positions.end(), {static_cast<double>(i), static_cast<double>(j), 0.0});
+            uvs.insert(uvs.end(), {low + (high - low) * i / n, low + (high - low) * j / n});
+        }
+    }
+    for (int j = 0; j < n; ++j) {
+        for (int i = 0; i < n; ++i) {
+            Index const v = j * (n + 1) + i;
+            faces.push_back({v, v + 1, v + n + 2, v + n + 1});
+            values.insert(values.end(), faces.back().begin(), faces.back().end());
+        }
+    }
+    engine::Scene scene = test::MakeScene(std::move(positions), faces);
+    scene.cage.fvarChannels.push_back({static_cast<Index>(uvs.size() / 2), std::move(values)});
+    scene.uvs = std::move(uvs);
+    return scene;
+}
+
+struct Covering {
+    TexelBand band;
+    size_t numHits = 0, numExact = 0;
+};
+
+/// Rasterises all faces; checks that every hit maps to its texel's centre and is within its domain.
+/// \param numClamped  how many hits may lie at a piece's edge rather than at their texel's centre; -1: one in twenty
+Covering CoverAndCheck(engine::Scene const& scene, int size, int tile = 1001, int numClamped = -1) {
+    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    eval::LimitSurface const surface(*refiner, 0);
+    UVRaster raster(surface, scene.uvs);
+    TileGrid grid;
+    grid.width = grid.height = size;
+    grid.tileU = (tile - 1001) % 10;
+    grid.tileV = (tile - 1001) / 10;
+    Covering result;
+    result.band.Reset(0, size, size);
+    for (Index face = 0; face < surface.GetNumFaces(); ++face) {
+        if (!surface.HasLimit(face)) continue;
+        auto const hits = raster.Rasterise(face, grid, result.band);
+        for (int domain = 0; domain < surface.GetNumDomains(face); ++domain) {
+            for (size_t i = 0; i < hits[domain].texel.size(); ++i) {
+                double const s = hits[domain].s[i], t = hits[domain].t[i];
+                auto const [u, v] = raster.Evaluate(domain, s, t);
+                double const dx = grid.ToX(u) - hits[domain].texel[i] % size;
+                double const dy = grid.ToY(v) - hits[domain].texel[i] / size;
+                EXPECT_LT(std::hypot(dx, dy), 1.01e-4) << "face " << face;
+                result.numExact += std::hypot(dx, dy) < 1.01 * eval::kInversionEnd;
+                EXPECT_TRUE(s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0);
+                EXPECT_EQ(result.band.owner[hits[domain].texel[i]], face);
+                ++result.numHits;
+            }
+        }
+    }
+    // Newton's method ends within kInversionEnd; only at the edge of a piece a place may be clamped.
+    EXPECT_GE(result.numExact + (numClamped < 0 ? result.numHits / 20 : static_cast<size_t>(numClamped)), result.numHits);
+    return result;
+}
+
+size_t Count(std::vector<uint8_t> const& flags) { return static_cast<size_t>(std::count(flags.begin(), flags.end(), 1)); }
+
+// The whole square is covered: size^2 texels, each once.
+TEST(UVRaster, APlaneOverTheTileCoversEveryTexelOnce) {
+    for (int n : {1, 3, 7}) {
+        auto const covering = CoverAndCheck(MakePlane(n, 0.0, 1.0), 64);
+        EXPECT_EQ(covering.numHits, 64u * 64u) << n;
+        EXPECT_EQ(Count(covering.band.overlap), 0u);
+        EXPECT_EQ(Count(covering.band.failed), 0u);
+    }
+}
+
+// Texel centres at (x + 1/2)/64: those in [0.25, 0.75] are x = 16 .. 47, 32 x 32 of them.
+TEST(UVRaster, APlaneOverHalfTheTileCoversItsTexels) {
+    EXPECT_EQ(CoverAndCheck(MakePlane(2, 0.25, 0.75), 64).numHits, 32u * 32u);
+}
+
+// Edges through texel centres (0.5/8 + k/8): the border's texels count as covered.
+TEST(UVRaster, ABorderThroughTexelCentresCounts) {
+    EXPECT_EQ(CoverAndCheck(MakePlane(2, 2.5 / 8, 5.5 / 8), 8).numHits, 16u);
+}
+
+// A texel is covered up to 1e-4 of a texel beside the face: a border half as far inside of the centres keeps
+// them (12 of the 16 are at the border), one twice as far loses them.
+TEST(UVRaster, ABorderCountsWithinATenThousandthOfATexel) {
+    auto const plane = [](double inset) { return MakePlane(2, (2.5 + inset) / 8, (5.5 - inset) / 8); };
+    EXPECT_EQ(CoverAndCheck(plane(5e-5), 8, 1001, 12).numHits, 16u);
+    EXPECT_EQ(CoverAndCheck(plane(2e-4), 8).numHits, 4u);
+}
+
+TEST(UVRaster, TheLowestFaceWinsWhereFacesOverlap) {
+    engine::Scene scene = MakePlane(1, 0.0, 1.0);
+    engine::Scene const second = MakePlane(1, 0.25, 0.75);
+    for (double x : second.positions) scene.positions.push_back(x + 10.0);
+    scene.cage.faceSizes.push_back(4);
+    for (Index v : {4, 5, 7, 6}) scene.cage.faceVertices.push_back(v);
+    scene.cage.numVertices = 8;
+    scene.uvs.insert(scene.uvs.end(), second.uvs.begin(), second.uvs.end());
+    scene.cage.fvarChannels[0].numValues = 8;
+    for (Index v : {4, 5, 7, 6}) scene.cage.fvarChannels[0].valueIndices.push_back(v);
+    auto const covering = CoverAndCheck(scene, 32);
+    EXPECT_EQ(covering.numHits, 32u * 32u);  // all of face 0, nothing of face 1
+    EXPECT_EQ(Count(covering.band.overlap), 16u * 16u);
+}
+
+class UVRasterOnMesh : public testing::TestWithParam<char const*> {};
+
+// Curved charts, seams, extraordinary texture vertices: hits are exact, and supply both sides of every
+// inner edge, so that no texel within a chart stays empty. Coverage by a finer dicing would be the same.
+TEST_P(UVRasterOnMesh, HitsMapToTexelCentres) {
+    auto const scene = test::LoadData(std::string("opensubdiv_shapes/") + GetParam());
+    ASSERT_TRUE(scene.HasUVs());
+    auto const covering = CoverAndCheck(scene, 96);
+    EXPECT_GT(covering.numHits, 0u);
+    EXPECT_EQ(Count(covering.band.failed), 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cages, UVRasterOnMesh,
+                         testing::Values("catmark_fvar_bound0.obj", "catmark_fvar_bound2.obj", "catmark_helmet.obj",
+                                         "catmark_nonquads.obj", "catmark_torus_creases0.obj", "catmark_car.obj"),
+                         [](testing::TestParamInfo<char const*> const& mesh) {
+                             std::string const name = mesh.param;
+                             return name.substr(0, name.find('.'));
+                         });
+
+TEST(UVRaster, EveryFaceVaryingRuleIsInverted) {
+    for (auto rule : {Sdc::Options::FVAR_LINEAR_NONE, Sdc::Options::FVAR_LINEAR_CORNERS_ONLY,
+                      Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1, Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2,
+                      Sdc::Options::FVAR_LINEAR_BOUNDARIES, Sdc::Options::FVAR_LINEAR_ALL}) {
+        engine::Scene scene = test::LoadData("opensubdiv_shapes/catmark_fvar_bound0.obj");
+        scene.cage.options.SetFVarLinearInterpolation(rule);
+        EXPECT_GT(CoverAndCheck(scene, 48).numHits, 100u) << static_cast<int>(rule);
+    }
+}
+
+// Spot's chart interiors have no gaps: a covered texel's four neighbours are covered unless the chart
+// ends there, which shows as an uncovered run at least two texels long in that direction.
+TEST(UVRaster, ChartsOfARealAssetHaveNoPinholes) {
+    auto const scene = engine::Scene(test::LoadData("../../scenes/spot/spot.obj"));
+    auto const covering = CoverAndCheck(scene, 256);
+    auto const isCovered = [&](int x, int y) { return covering.band.owner[static_cast<size_t>(y * 256 + x)] >= 0; };
+    size_t pinholes = 0;
+    for (int y = 1; y < 255; ++y) {
+        for (int x = 1; x < 255; ++x) {
+            pinholes += !isCovered(x, y) && isCovered(x - 1, y) && isCovered(x + 1, y) && isCovered(x, y - 1) && isCovered(x, y + 1);
+        }
+    }
+    EXPECT_EQ(pinholes, 0u);
+}
+
+// The square's UVs scaled by zero in one direction: no area, no texel, no endless search.
+TEST(UVRaster, CollapsedTextureCoordinatesCoverNothing) {
+    engine::Scene scene = MakePlane(2, 0.1, 0.9);
+    for (size_t i = 1; i < scene.uvs.size(); i += 2) scene.uvs[i] = 0.5;
+    auto const covering = CoverAndCheck(scene, 32);
+    EXPECT_EQ(covering.numHits, 0u);
+    EXPECT_EQ(Count(covering.band.failed), 0u);
+}
+
+}  // namespace
+}  // namespace limn

@@ -1,0 +1,283 @@
+#include "engine/io/mesh_writer.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <locale>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "engine/io/mesh_reader.h"
+#include "engine/scene/refine.h"
+#include "support/files.h"
+#include "support/meshes.h"
+
+namespace limn {
+namespace {
+
+using engine::Scene;
+
+/// Writes a scene and reads it back.
+Scene RoundTrip(Scene const& scene, std::string const& name, bool isDouble, std::vector<std::string>* warnings = nullptr) {
+    test::TemporaryFolder const folder;
+    engine::WriteMesh(folder / name, scene, isDouble, warnings);
+    EXPECT_EQ(folder.List(), (std::vector<std::string>{name}));
+    return engine::ReadMesh(folder / name);
+}
+
+/// Same bits: tells -0 from 0, which == does not.
+void ExpectSameBits(std::vector<double> const& a, std::vector<double> const& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (size_t i = 0; i < a.size(); ++i) {
+        ASSERT_EQ(std::bit_cast<uint64_t>(a[i]), std::bit_cast<uint64_t>(b[i])) << "value " << i << ": " << a[i] << " " << b[i];
+    }
+}
+
+std::vector<double> AsFloats(std::vector<double> values) {
+    for (double& value : values) value = static_cast<double>(static_cast<float>(value));
+    return values;
+}
+
+/// Corner for corner the same texture coordinates, however they are shared.
+void ExpectSameCornerUVs(Scene const& a, Scene const& b) {
+    auto const& p = a.cage.fvarChannels.at(0).valueIndices;
+    auto const& q = b.cage.fvarChannels.at(0).valueIndices;
+    ASSERT_EQ(p.size(), q.size());
+    for (size_t corner = 0; corner < p.size(); ++corner) {
+        for (int c = 0; c < 2; ++c) ASSERT_EQ(a.uvs[2 * p[corner] + c], b.uvs[2 * q[corner] + c]) << corner;
+    }
+}
+
+/// Numbers no short decimal hits: random mantissas over many magnitudes, and the edges of the range.
+Scene MakeAwkward(bool isDouble) {
+    Scene scene = test::MakeTorus(8, 6);
+    std::mt19937_64 random(7);
+    auto const number = [&] {
+        double const x = std::ldexp(static_cast<double>(random() >> 11), static_cast<int>(random() % 60) - 83);
+        return random() % 2 ? x : -x;
+    };
+    for (double& value : scene.positions) value = number();
+    for (double& value : scene.uvs) value = std::abs(number());
+    using Float = std::numeric_limits<float>;
+    using Double = std::numeric_limits<double>;
+    std::vector<double> const edges = isDouble ? std::vector<double>{1e30, Double::min(), -0.0, 1.0 / 3, 5e-324, 0.1}
+                                               : std::vector<double>{9.99e29f, Float::min(), -0.0, 1.0f / 3, Float::denorm_min(), 0.1f};
+    std::copy(edges.begin(), edges.end(), scene.positions.begin());
+    if (!isDouble) {
+        scene.positions = AsFloats(scene.positions);
+        scene.uvs = AsFloats(scene.uvs);
+    }
+    return scene;
+}
+
+class WrittenMesh : public testing::TestWithParam<std::tuple<std::string, bool>> {};
+
+TEST_P(WrittenMesh, ReadsBackAsTheSameNumbers) {
+    auto const& [ending, isDouble] = GetParam();
+    Scene const scene = MakeAwkward(isDouble);
+    Scene back = RoundTrip(scene, "mesh" + ending, isDouble);
+    if (!isDouble) {  // digits of a float name a double beside it; as floats the two are the same
+        back.positions = AsFloats(back.positions);
+        back.uvs = AsFloats(back.uvs);
+    }
+    ExpectSameBits(scene.positions, back.positions);
+    ExpectSameCornerUVs(scene, back);
+    EXPECT_EQ(scene.cage.faceVertices, back.cage.faceVertices);
+    EXPECT_EQ(scene.cage.faceSizes, back.cage.faceSizes);
+}
+
+TEST_P(WrittenMesh, IsTheSameInEveryLocale) {
+    struct Comma : std::numpunct<char> {
+        char do_decimal_point() const override { return ','; }
+        char do_thousands_sep() const override { return '.'; }
+        std::string do_grouping() const override { return "\3"; }
+    };
+    auto const& [ending, isDouble] = GetParam();
+    test::TemporaryFolder const folder;
+    Scene const scene = MakeAwkward(isDouble);
+    engine::WriteMesh(folder / "a" + ending, scene, isDouble, nullptr);
+    std::locale const before = std::locale::global(std::locale(std::locale(), new Comma));
+    engine::WriteMesh(folder / "b" + ending, scene, isDouble, nullptr);
+    std::locale::global(before);
+    EXPECT_EQ(test::ReadText(folder / "a" + ending), test::ReadText(folder / "b" + ending));
+}
+
+INSTANTIATE_TEST_SUITE_P(Format, WrittenMesh, testing::Combine(testing::Values(".obj", ".ply"), testing::Bool()),
+                         [](auto const& instance) {
+                             return std::get<0>(instance.param).substr(1) + (std::get<1>(instance.param) ? "Double" : "Float");
+                         });
+
+TEST(MeshWriter, FloatOutputRoundsToTheNearestFloat) {
+    Scene scene = test::MakeCube();
+    scene.positions[0] = 0.1;
+    for (std::string const name : {"a.obj", "a.ply"}) {
+        EXPECT_EQ(static_cast<float>(RoundTrip(scene, name, false).positions[0]), 0.1f) << name;
+    }
+}
+
+TEST(MeshWriter, NumberBeyondFloatIsRefusedRatherThanWrittenAsInfinity) {
+    Scene scene = test::MakeCube();
+    scene.positions[0] = 1e300;
+    for (std::string const name : {"a.obj", "a.ply"}) {
+        test::TemporaryFolder const folder;
+        EXPECT_THROW(engine::WriteMesh(folder / name, scene, false, nullptr), Error) << name;
+        EXPECT_TRUE(folder.List().empty()) << name;
+    }
+}
+
+TEST(MeshWriter, ObjKeepsTags) {
+    Scene scene = test::MakeTorus(4, 4);
+    auto& cage = scene.cage;
+    cage.creaseVertexPairs = {0, 1, 1, 2, 5, 4};
+    cage.creaseSharpness = {2.5f, 0.1f, 10.0f};
+    cage.cornerVertices = {7, 3};
+    cage.cornerSharpness = {1.0f / 3, 4.0f};
+    cage.holes = {2, 9};
+    Scene const back = RoundTrip(scene, "a.obj", false);
+    EXPECT_EQ(back.cage.creaseVertexPairs, cage.creaseVertexPairs);
+    EXPECT_EQ(back.cage.creaseSharpness, cage.creaseSharpness);
+    EXPECT_EQ(back.cage.cornerVertices, cage.cornerVertices);
+    EXPECT_EQ(back.cage.cornerSharpness, cage.cornerSharpness);
+    EXPECT_EQ(back.cage.holes, cage.holes);
+}
+
+TEST(MeshWriter, ObjKeepsEverySubdivisionRule) {
+    Scene scene = test::MakeTorus(4, 4);
+    auto& options = scene.cage.options;
+    for (auto boundary : {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
+        for (int fvar = Sdc::Options::FVAR_LINEAR_NONE; fvar <= Sdc::Options::FVAR_LINEAR_ALL; ++fvar) {
+            for (bool isOther : {false, true}) {
+                options.SetVtxBoundaryInterpolation(boundary);
+                options.SetFVarLinearInterpolation(static_cast<Sdc::Options::FVarLinearInterpolation>(fvar));
+                options.SetCreasingMethod(isOther ? Sdc::Options::CREASE_CHAIKIN : Sdc::Options::CREASE_UNIFORM);
+                options.SetTriangleSubdivision(isOther ? Sdc::Options::TRI_SUB_SMOOTH : Sdc::Options::TRI_SUB_CATMARK);
+                auto const back = RoundTrip(scene, "a.obj", false).cage.options;
+                EXPECT_EQ(back.GetVtxBoundaryInterpolation(), boundary);
+                EXPECT_EQ(back.GetFVarLinearInterpolation(), fvar);
+                EXPECT_EQ(back.GetCreasingMethod(), options.GetCreasingMethod());
+                EXPECT_EQ(back.GetTriangleSubdivision(), options.GetTriangleSubdivision());
+            }
+        }
+    }
+}
+
+TEST(MeshWriter, EndingsMayBeCapital) {
+    Scene const torus = test::MakeTorus(6, 4);
+    for (char const* name : {"a.OBJ", "a.Obj", "a.PLY", "a.Ply"}) {
+        Scene const back = RoundTrip(torus, name, true);
+        ExpectSameBits(back.positions, torus.positions);
+        ExpectSameCornerUVs(back, torus);
+    }
+}
+
+TEST(MeshWriter, ObjKeepsSeveralNamesOfAGroup) {
+    Scene scene = test::MakeCube();
+    scene.groups[1] = {{"left arm", "arm"}, {0, 0, 1, -1, 0, 1}};
+    Scene const back = RoundTrip(scene, "a.obj", false);
+    EXPECT_EQ(engine::SelectGroups(back, {"arm"}), (std::vector<char>{1, 1, 1, 0, 1, 1}));
+    EXPECT_EQ(engine::SelectGroups(back, {"left"}), (std::vector<char>{1, 1, 0, 0, 1, 0}));
+}
+
+TEST(MeshWriter, ObjKeepsGroups) {
+    Scene scene = test::MakeCube();
+    scene.groups[0] = {{"red", "dark blue"}, {0, 0, 1, -1, 0, 1}};
+    scene.groups[2] = {{"body"}, {-1, 0, 0, 0, 0, 0}};
+    Scene const back = RoundTrip(scene, "a.obj", false);
+    for (size_t kind = 0; kind < 3; ++kind) {
+        EXPECT_EQ(back.groups[kind].names, scene.groups[kind].names) << kind;
+        EXPECT_EQ(back.groups[kind].faceGroup, scene.groups[kind].faceGroup) << kind;
+    }
+}
+
+TEST(MeshWriter, ObjKeepsUVSharingAndOrder) {
+    Scene const scene = test::LoadData("opensubdiv_shapes/catmark_cube.obj");
+    Scene const back = RoundTrip(scene, "a.obj", true);
+    EXPECT_EQ(back.uvs, scene.uvs);
+    EXPECT_EQ(back.cage.fvarChannels.at(0).valueIndices, scene.cage.fvarChannels.at(0).valueIndices);
+}
+
+TEST(MeshWriter, PlyKeepsPrimvars) {
+    Scene scene = test::MakeCube();
+    scene.primvars = {{"color", 3, {}}, {"quality", 1, {}}};
+    for (int i = 0; i < 24; ++i) scene.primvars[0].values.push_back(static_cast<float>(i) / 7);
+    for (int i = 0; i < 8; ++i) scene.primvars[1].values.push_back(static_cast<float>(-i) * 1e9f);
+    Scene const back = RoundTrip(scene, "a.ply", false);
+    ASSERT_EQ(back.primvars.size(), 2u);
+    for (size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(back.primvars[i].name, scene.primvars[i].name);
+        EXPECT_EQ(back.primvars[i].numChannels, scene.primvars[i].numChannels);
+        EXPECT_EQ(back.primvars[i].values, scene.primvars[i].values);
+    }
+}
+
+TEST(MeshWriter, WhatAFormatCannotHoldIsSaid) {
+    Scene scene = test::MakeCube();
+    scene.cage.creaseVertexPairs = {0, 1};
+    scene.cage.creaseSharpness = {2};
+    std::vector<std::string> warnings;
+    RoundTrip(scene, "a.ply", false, &warnings);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("PLY holds no creases"), std::string::npos) << warnings[0];
+
+    warnings.clear();
+    RoundTrip(scene, "a.obj", false, &warnings);
+    EXPECT_TRUE(warnings.empty());
+    scene.primvars = {{"quality", 1, std::vector<float>(8)}};
+    RoundTrip(scene, "a.obj", false, &warnings);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("OBJ holds no primvars"), std::string::npos) << warnings[0];
+}
+
+TEST(MeshWriter, OtherEndingsAreRefusedAndLeaveNothing) {
+    test::TemporaryFolder const folder;
+    for (std::string const name : {"a.stl", "a", "obj", "a.obj.txt"}) {
+        try {
+            engine::WriteMesh(folder / name, test::MakeCube(), false, nullptr);
+            ADD_FAILURE() << name;
+        } catch (Error const& error) {
+            EXPECT_EQ(error.GetCode(), ErrorCode::BadOption);
+            EXPECT_NE(std::string(error.what()).find(".obj or .ply"), std::string::npos);
+        }
+    }
+    EXPECT_TRUE(folder.List().empty());
+}
+
+TEST(MeshWriter, ReplacesAFileWhole) {
+    test::TemporaryFolder const folder;
+    std::string const path = folder.Write("a.obj", std::string(100000, 'x'));
+    engine::WriteMesh(path, test::MakeCube(), false, nullptr);
+    EXPECT_EQ(engine::ReadMesh(path).cage.numVertices, 8);
+    EXPECT_EQ(folder.List(), (std::vector<std::string>{"a.obj"}));
+}
+
+TEST(MeshWriter, RefinedMeshReadsBackWithItsTags) {
+    Scene scene = test::LoadData("opensubdiv_shapes/catmark_cube_creases0.obj");
+    Scene const fine = engine::RefineUniformly(scene, 1, false);
+    Scene const back = RoundTrip(fine, "a.obj", true);
+    ExpectSameBits(fine.positions, back.positions);
+    ExpectSameCornerUVs(fine, back);
+    EXPECT_EQ(back.cage.creaseVertexPairs, fine.cage.creaseVertexPairs);
+    EXPECT_EQ(back.cage.creaseSharpness, fine.cage.creaseSharpness);
+}
+
+// Normals go with the vertices, beside texture coordinates or alone; a reader that leaves them out reads the same mesh.
+TEST(MeshWriter, NormalsAreThoseOfTheVertices) {
+    for (bool hasUVs : {false, true}) {
+        Scene scene = hasUVs ? test::MakeTorus(5, 4) : test::MakeCube();
+        Scene const plain = scene;
+        for (Index vertex = 0; vertex < scene.cage.numVertices; ++vertex) scene.normals.insert(scene.normals.end(), {0.25 * vertex, 0.5, -1.0});
+        std::string const text = engine::FormatMesh("a.obj", scene, true, nullptr);
+        std::string const first = std::to_string(scene.cage.faceVertices[0] + 1);
+        std::string const uv = hasUVs ? std::to_string(scene.cage.fvarChannels[0].valueIndices[0] + 1) : "";
+        EXPECT_NE(text.find("\nf " + first + "/" + uv + "/" + first + " "), std::string::npos);
+        EXPECT_NE(text.find("\nvn 0.25 0.5 -1\n"), std::string::npos);
+        Scene const read = RoundTrip(scene, "a.obj", true);
+        EXPECT_EQ(read.cage.faceVertices, plain.cage.faceVertices);
+        ExpectSameBits(read.positions, plain.positions);
+        if (hasUVs) ExpectSameCornerUVs(read, plain);
+    }
+}
+
+}  // namespace
+}  // namespace limn

@@ -1,0 +1,400 @@
+#include "engine/io/ply_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <locale>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include "far_ext/topology/control_mesh.h"
+#include "support/files.h"
+
+namespace limn {
+namespace {
+
+using engine::Scene;
+
+Scene Parse(std::string const& bytes) {
+    Scene scene;
+    scene.path = "mesh.ply";
+    engine::ReadPly(bytes, scene);
+    return scene;
+}
+
+std::string RefusalOfBytes(std::string const& bytes) {
+    return test::RefusalOf([&] { Parse(bytes); });
+}
+
+/// Binary values in either byte order.
+class Bytes {
+public:
+    explicit Bytes(bool isBig) : _isBig(isBig) {}
+
+    template <class T>
+    Bytes& Add(T value) {
+        char raw[sizeof value];
+        std::memcpy(raw, &value, sizeof value);
+        if (_isBig) std::reverse(raw, raw + sizeof value);
+        _text.append(raw, sizeof value);
+        return *this;
+    }
+    std::string const& GetText() const { return _text; }
+
+private:
+    bool _isBig;
+    std::string _text;
+};
+
+char const* FormatName(bool isBig) { return isBig ? "binary_big_endian" : "binary_little_endian"; }
+
+std::string const kTriangle =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+/// A triangle with every type a property can have, and its header.
+std::string MakeTyped(bool isBig) {
+    Bytes body(isBig);
+    for (int v = 0; v < 3; ++v) {
+        body.Add(1.25 * v).Add(0.1f * static_cast<float>(v)).Add(static_cast<int16_t>(-7 * v));
+        body.Add(static_cast<uint8_t>(51 * v)).Add(static_cast<uint8_t>(255)).Add(static_cast<uint8_t>(0));
+        body.Add(static_cast<int8_t>(-v)).Add(static_cast<uint16_t>(65535 - v)).Add(static_cast<int32_t>(-100000 * v));
+        body.Add(4000000000u + static_cast<uint32_t>(v));
+    }
+    body.Add(static_cast<uint8_t>(3)).Add(static_cast<int32_t>(2)).Add(static_cast<int32_t>(1)).Add(static_cast<int32_t>(0));
+    body.Add(static_cast<uint16_t>(6));
+    for (float x : {0.0f, 0.5f, 1.0f, 0.25f, 0.75f, 0.125f}) body.Add(x);
+    return fmt::format(
+               "ply\nformat {} 1.0\ncomment made by a test\nobj_info nothing\nelement vertex 3\n"
+               "property double x\nproperty float32 y\nproperty short z\nproperty uchar red\nproperty uchar green\n"
+               "property uint8 blue\nproperty char a\nproperty ushort b\nproperty int c\nproperty uint d\n"
+               "element face 1\nproperty list uchar int vertex_index\nproperty list ushort float texcoord\nend_header\n",
+               FormatName(isBig)) +
+           body.GetText();
+}
+
+engine::Primvar const* FindPrimvar(Scene const& scene, std::string const& name) {
+    for (auto const& primvar : scene.primvars) {
+        if (primvar.name == name) return &primvar;
+    }
+    return nullptr;
+}
+
+TEST(PlyReader, ReadsText) {
+    Scene const scene = Parse(kTriangle);
+    EXPECT_EQ(scene.positions, (std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0}));
+    EXPECT_EQ(scene.cage.numVertices, 3);
+    EXPECT_EQ(scene.cage.faceSizes, (std::vector<Index>{3}));
+    EXPECT_EQ(scene.cage.faceVertices, (std::vector<Index>{0, 1, 2}));
+    EXPECT_EQ(scene.faceLines, (std::vector<uint32_t>{13}));  // 9 lines of header, 3 of vertices
+    EXPECT_FALSE(scene.HasUVs());
+    EXPECT_TRUE(scene.primvars.empty());
+}
+
+TEST(PlyReader, CrlfAndMissingLastLineEndChangeNothing) {
+    std::string crlf;
+    for (char c : kTriangle) crlf += c == '\n' ? std::string("\r\n") : std::string(1, c);
+    for (std::string const& text : {crlf, kTriangle.substr(0, kTriangle.size() - 1)}) {
+        EXPECT_EQ(Parse(text).positions, Parse(kTriangle).positions);
+        EXPECT_EQ(Parse(text).cage.faceVertices, Parse(kTriangle).cage.faceVertices);
+    }
+}
+
+class PlyByteOrder : public testing::TestWithParam<bool> {};
+
+TEST_P(PlyByteOrder, EveryTypeIsRead) {
+    Scene const scene = Parse(MakeTyped(GetParam()));
+    EXPECT_EQ(scene.positions, (std::vector<double>{0, 0, 0, 1.25, 0.1f, -7, 2.5, 0.1f * 2, -14}));
+    EXPECT_EQ(scene.cage.faceVertices, (std::vector<Index>{2, 1, 0}));
+    ASSERT_NE(FindPrimvar(scene, "a"), nullptr);
+    EXPECT_EQ(FindPrimvar(scene, "a")->values, (std::vector<float>{0, -1, -2}));
+    EXPECT_EQ(FindPrimvar(scene, "b")->values, (std::vector<float>{65535, 65534, 65533}));
+    EXPECT_EQ(FindPrimvar(scene, "c")->values, (std::vector<float>{0, -100000, -200000}));
+    EXPECT_EQ(FindPrimvar(scene, "d")->values[0], 4e9f);
+}
+
+TEST_P(PlyByteOrder, ByteColoursBecomeAPrimvarFromZeroToOne) {
+    Scene const scene = Parse(MakeTyped(GetParam()));
+    auto const* const colour = FindPrimvar(scene, "color");
+    ASSERT_NE(colour, nullptr);
+    EXPECT_EQ(colour->numChannels, 3);
+    // 51/255 is a fifth
+    EXPECT_EQ(colour->values, (std::vector<float>{0, 1, 0, 0.2f, 1, 0, 0.4f, 1, 0}));
+}
+
+TEST_P(PlyByteOrder, TexcoordListGivesEveryCornerItsUV) {
+    Scene const scene = Parse(MakeTyped(GetParam()));
+    auto const& indices = scene.cage.fvarChannels.at(0).valueIndices;
+    ASSERT_EQ(indices.size(), 3u);
+    double const expected[3][2] = {{0, 0.5}, {1, 0.25}, {0.75, 0.125}};
+    for (size_t corner = 0; corner < 3; ++corner) {
+        EXPECT_EQ(scene.uvs[2 * indices[corner]], expected[corner][0]) << corner;
+        EXPECT_EQ(scene.uvs[2 * indices[corner] + 1], expected[corner][1]) << corner;
+    }
+}
+
+TEST_P(PlyByteOrder, FileCutAnywhereIsRefused) {
+    std::string const whole = MakeTyped(GetParam());
+    for (size_t size = 0; size < whole.size(); ++size) {
+        std::string const message = RefusalOfBytes(whole.substr(0, size));
+        ASSERT_EQ(message.find("mesh.ply:"), 0u) << size << " of " << whole.size() << " bytes: " << message;
+    }
+}
+
+TEST_P(PlyByteOrder, NanInAPositionIsRefusedAndItsVertexNamed) {
+    Bytes body(GetParam());
+    for (float x : {0.0f, 0.0f, 0.0f, 1.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f, 0.0f, 1.0f, 0.0f}) body.Add(x);
+    body.Add(static_cast<uint8_t>(3)).Add(0).Add(1).Add(2);
+    std::string header = kTriangle.substr(0, kTriangle.find("end_header\n") + 11);
+    header.replace(header.find("ascii"), 5, FormatName(GetParam()));
+    std::string const message = RefusalOfBytes(header + body.GetText());
+    EXPECT_EQ(message.find("mesh.ply: vertex 1: "), 0u) << message;
+    EXPECT_NE(message.find("'y' is nan; a number up to 1e+30 is needed"), std::string::npos) << message;
+}
+
+INSTANTIATE_TEST_SUITE_P(Order, PlyByteOrder, testing::Bool(),
+                         [](testing::TestParamInfo<bool> const& instance) { return instance.param ? "Big" : "Little"; });
+
+TEST(PlyReader, VertexTextureCoordinatesGoByThreeNames) {
+    for (auto const& [u, v] : {std::pair{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}}) {
+        std::string text = kTriangle;
+        text.replace(text.find("element face"), 0, fmt::format("property float {}\nproperty float {}\n", u, v));
+        text.replace(text.find("0 0 0\n"), 18, "0 0 0 .25 .5\n1 0 0 1 0\n0 1 0 0 1\n");
+        Scene const scene = Parse(text);
+        EXPECT_EQ(scene.uvs, (std::vector<double>{0.25, 0.5, 1, 0, 0, 1})) << u;
+        EXPECT_EQ(scene.cage.fvarChannels.at(0).valueIndices, scene.cage.faceVertices) << u;
+        EXPECT_TRUE(scene.primvars.empty()) << u;
+    }
+}
+
+/// Two triangles that share an edge, with the given texcoord lists.
+std::string MakePair(std::string const& first, std::string const& second) {
+    return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+           "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n"
+           "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 " + first + "\n3 0 2 3 " + second + "\n";
+}
+
+TEST(PlyReader, CornersOfOneVertexShareAUVOnlyWhereItIsTheSame) {
+    // Vertex 0 has (0,0) in both faces, vertex 2 has (1,1) in one and (.5,.5) in the other: 5 values.
+    Scene const scene = Parse(MakePair("6 0 0 1 0 1 1", "6 0 0 .5 .5 0 1"));
+    auto const& channel = scene.cage.fvarChannels.at(0);
+    EXPECT_EQ(channel.numValues, 5);
+    EXPECT_EQ(channel.valueIndices[0], channel.valueIndices[3]);
+    EXPECT_NE(channel.valueIndices[2], channel.valueIndices[4]);
+}
+
+TEST(PlyReader, FacesWithoutTexcoordsTakeTheUVsAwayAndAWarningSaysSo) {
+    Scene const scene = Parse(MakePair("6 0 0 1 0 1 1", "0"));
+    EXPECT_FALSE(scene.HasUVs());
+    EXPECT_EQ(scene.warnings.size(), 1u);
+}
+
+TEST(PlyReader, FurtherScalarsArePrimvarsAndNormalsAreNot) {
+    std::string text = kTriangle;
+    text.replace(text.find("element face"), 0, "property float nx\nproperty float ny\nproperty float nz\nproperty float quality\n");
+    text.replace(text.find("0 0 0\n"), 18, "0 0 0 0 0 1 .5\n1 0 0 0 0 1 -2\n0 1 0 0 0 1 3e4\n");
+    Scene const scene = Parse(text);
+    ASSERT_EQ(scene.primvars.size(), 1u);
+    EXPECT_EQ(scene.primvars[0].name, "quality");
+    EXPECT_EQ(scene.primvars[0].values, (std::vector<float>{0.5f, -2.0f, 3e4f}));
+}
+
+TEST(PlyReader, AlphaMakesColoursFourChannels) {
+    std::string text = kTriangle;
+    text.replace(text.find("element face"), 0, "property float red\nproperty float green\nproperty float blue\nproperty float alpha\n");
+    text.replace(text.find("0 0 0\n"), 18, "0 0 0 1 2 3 4\n1 0 0 5 6 7 8\n0 1 0 .5 .25 0 1\n");
+    Scene const scene = Parse(text);
+    ASSERT_EQ(scene.primvars.size(), 1u);
+    EXPECT_EQ(scene.primvars[0].numChannels, 4);
+    EXPECT_EQ(scene.primvars[0].values, (std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 0.5f, 0.25f, 0, 1}));
+}
+
+TEST(PlyReader, ScalarNamedColorDoesNotMixWithColours) {
+    std::string text = kTriangle;
+    text.replace(text.find("element face"), 0, "property float color\nproperty float red\nproperty float green\nproperty float blue\n");
+    text.replace(text.find("0 0 0\n"), 18, "0 0 0 9 1 2 3\n1 0 0 9 4 5 6\n0 1 0 9 7 8 10\n");
+    Scene scene;
+    try {
+        scene = Parse(text);
+    } catch (Error const&) {
+        return;  // to refuse it would be right too
+    }
+    size_t numValues = 0;
+    for (auto const& primvar : scene.primvars) {
+        EXPECT_EQ(primvar.values.size(), 3u * static_cast<size_t>(primvar.numChannels)) << primvar.name;
+        numValues += primvar.values.size();
+    }
+    EXPECT_EQ(numValues, 12u);  // one scalar and three colours at 3 vertices
+}
+
+TEST(PlyReader, ElementsItDoesNotKnowAreSkipped) {
+    std::string text = kTriangle;
+    text.replace(text.find("element face"), 0, "element camera 2\nproperty float f\nproperty list uchar int ids\n");
+    text.replace(text.find("3 0 1 2\n"), 0, "1.5 2 7 7\n2.5 0\n");
+    EXPECT_EQ(Parse(text).cage.faceVertices, (std::vector<Index>{0, 1, 2}));
+}
+
+TEST(PlyReader, NumbersDoNotDependOnTheLocale) {
+    struct Comma : std::numpunct<char> {
+        char do_decimal_point() const override { return ','; }
+    };
+    std::string text = kTriangle;
+    text.replace(text.find("1 0 0\n"), 5, "1.5 0 0");
+    std::locale const before = std::locale::global(std::locale(std::locale(), new Comma));
+    Scene const scene = Parse(text);
+    std::locale::global(before);
+    EXPECT_EQ(scene.positions[3], 1.5);
+}
+
+// -------- refusals
+
+TEST(PlyReader, TwoIndexListsAreRefusedOrRead) {
+    std::string const text =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nproperty list uchar int vertex_index\n"
+        "property list uchar float texcoord\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 3 0 1 2 6 0 0 1 0 0 1\n";
+    try {
+        Scene const scene = Parse(text);
+        EXPECT_EQ(scene.cage.faceVertices.size(), 3u);
+        EXPECT_EQ(scene.cage.fvarChannels.at(0).valueIndices.size(), 3u);
+    } catch (Error const& error) {
+        EXPECT_EQ(error.GetCode(), ErrorCode::BadMesh);
+    }
+}
+
+struct Refusal {
+    std::string name, from, to, where;  // kTriangle with `from` replaced by `to`
+    std::vector<std::string> says;
+};
+
+void PrintTo(Refusal const& refusal, std::ostream* out) { *out << refusal.name; }
+
+class PlyRefusal : public testing::TestWithParam<Refusal> {};
+
+TEST_P(PlyRefusal, NamesLineReasonAndRemedy) {
+    std::string text = kTriangle;
+    size_t const at = text.find(GetParam().from);
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, GetParam().from.size(), GetParam().to);
+    std::string const message = RefusalOfBytes(text);
+    EXPECT_EQ(message.find("mesh.ply:" + GetParam().where), 0u) << message;
+    for (std::string const& part : GetParam().says) EXPECT_NE(message.find(part), std::string::npos) << part << "\nnot in: " << message;
+    EXPECT_LT(message.size(), 400u) << "a message is one line that can be read";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, PlyRefusal,
+    testing::Values(
+        Refusal{"WrongMagic", "ply\n", "plyx\n", "1: ", {"does not start with 'ply'"}},
+        Refusal{"UnknownFormat", "format ascii", "format utf8", "2: ", {"'utf8'", "binary_big_endian"}},
+        Refusal{"NoFormat", "format ascii 1.0\n", "", "", {"no 'format' line"}},
+        Refusal{"NoEndOfHeader", "end_header", "comment", "10: ", {"'0' has no place in a PLY header"}},
+        Refusal{"OnlyAHeader", kTriangle.substr(kTriangle.find("end_header")), "", "8: ", {"no 'end_header'"}},
+        Refusal{"UnknownType", "float x", "quad x", "4: ", {"'quad'"}},
+        Refusal{"PropertyBeforeElements", "element vertex 3\n", "", "3: ", {"before the first element"}},
+        Refusal{"NoZ", "property float z\n", "", "", {"lacks x, y or z"}},
+        Refusal{"NoIndices", "vertex_indices", "indices", "", {"vertex_indices"}},
+        Refusal{"CountThatIsAWord", "vertex 3", "vertex many", "3: ", {"'many'"}},
+        Refusal{"NegativeCount", "vertex 3", "vertex -3", "3: ", {"count -3", "0 to"}},
+        Refusal{"CountWithAFraction", "vertex 3", "vertex 2.5", "3: ", {"count 2.5"}},
+        Refusal{"CountBeyond32Bits", "vertex 3", "vertex 99999999999", "3: ", {"99999999999"}},
+        Refusal{"NoFaces", "face 1", "face 0", "", {"no faces"}},
+        Refusal{"TextTooShort", "face 1", "face 2", "13: ", {"ends before face 1 of 2"}},
+        Refusal{"NotANumber", "1 0 0\n", "1 zero 0\n", "11: ", {"y is 'zero'", "finite number is needed"}},
+        Refusal{"Nan", "1 0 0\n", "1 0 nan\n", "11: ", {"z is 'nan'"}},
+        Refusal{"Infinity", "1 0 0\n", "-inf 0 0\n", "11: ", {"x is '-inf'"}},
+        Refusal{"MissingNumber", "1 0 0\n", "1 0\n", "11: ", {"z is missing"}},
+        Refusal{"IndexTooLarge", "3 0 1 2", "3 0 1 3", "13: ", {"vertex 3", "0 to 2"}},
+        Refusal{"NegativeIndex", "3 0 1 2", "3 0 1 -1", "13: ", {"vertex -1", "0 to 2"}},
+        Refusal{"IndexWithAFraction", "3 0 1 2", "3 0 1 1.5", "13: ", {"vertex 1.5"}},
+        Refusal{"TwoCorners", "3 0 1 2", "2 0 1", "13: ", {"2 corners", "at least 3"}},
+        Refusal{"NegativeListLength", "3 0 1 2", "-3 0 1 2", "13: ", {"length -3"}},
+        Refusal{"LongListLength", "3 0 1 2", "900000000 0 1 2", "13: ", {"missing"}}),
+    [](testing::TestParamInfo<Refusal> const& instance) { return instance.param.name; });
+
+TEST(PlyReader, TexcoordListOfTheWrongLengthIsRefused) {
+    std::string const message = RefusalOfBytes(MakePair("6 0 0 1 0 1 1", "4 0 0 .5 .5"));
+    EXPECT_EQ(message, "mesh.ply:16: list 'texcoord' has 4 numbers; 6 are needed");
+}
+
+TEST(PlyReader, NanInATexcoordIsRefused) {
+    EXPECT_EQ(RefusalOfBytes(MakePair("6 0 0 1 nan 1 1", "6 0 0 1 1 0 1")).find("mesh.ply:15: "), 0u);
+}
+
+/// Peak memory of this process so far, bytes.
+size_t PeakMemory() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<size_t>(usage.ru_maxrss) * 1024;
+}
+
+constexpr size_t kModest = 64u << 20;  // far above what the small files here need
+
+TEST(PlyReader, HugeCountsInTheHeaderAreRefusedWithoutRoomForThem) {
+    size_t const before = PeakMemory();
+    for (std::string const format : {"ascii", "binary_little_endian"}) {
+        for (std::string const count : {"100000000", "536870911"}) {
+            std::string text = kTriangle;
+            text.replace(text.find("ascii"), 5, format);
+            std::string huge = text;
+            huge.replace(huge.find("vertex 3"), 8, "vertex " + count);
+            EXPECT_NE(RefusalOfBytes(huge), "") << format << " vertex " << count;
+            huge = text;
+            huge.replace(huge.find("face 1"), 6, "face " + count);
+            EXPECT_NE(RefusalOfBytes(huge), "") << format << " face " << count;
+        }
+    }
+    EXPECT_LT(PeakMemory() - before, kModest);
+}
+
+TEST(PlyReader, ManyPropertiesOfManyVerticesAreRefusedWithoutRoomForThem) {
+    // 1000 properties of 100 000 vertices would take 100 MB in the file; it has 200 kB.
+    std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex 100000\n"
+                       "property float x\nproperty float y\nproperty float z\n";
+    for (int i = 0; i < 1000; ++i) text += fmt::format("property char p{}\n", i);
+    text += "element face 1\nproperty list uchar int vertex_indices\nend_header\n" + std::string(200000, '\0');
+    size_t const before = PeakMemory();
+    EXPECT_NE(RefusalOfBytes(text), "");
+    EXPECT_LT(PeakMemory() - before, kModest);
+}
+
+TEST(PlyReader, HugeListInABinaryFileIsRefusedWithoutRoomForIt) {
+    std::string header = kTriangle.substr(0, kTriangle.find("end_header\n") + 11);
+    header.replace(header.find("ascii"), 5, "binary_little_endian");
+    header.replace(header.find("list uchar"), 10, "list uint ");
+    Bytes body(false);
+    for (int i = 0; i < 9; ++i) body.Add(static_cast<float>(i));
+    body.Add(900000000u).Add(0).Add(1).Add(2);
+    size_t const before = PeakMemory();
+    std::string const message = RefusalOfBytes(header + body.GetText());
+    EXPECT_NE(message.find("beyond the end of the file"), std::string::npos) << message;
+    EXPECT_LT(PeakMemory() - before, kModest);
+}
+
+// -------- hostile bytes
+
+TEST(PlyReader, DamagedFilesAreReadOrRefusedButNeverMore) {
+    for (std::string const& whole : {kTriangle, MakeTyped(false), MakeTyped(true), MakePair("6 0 0 1 0 1 1", "6 0 0 1 1 0 1")}) {
+        for (unsigned seed = 0; seed < 1000; ++seed) {
+            try {
+                far_ext::Validate(Parse(test::Damage(whole, seed)).cage);
+            } catch (Error const&) {
+            }
+        }
+    }
+}
+
+TEST(PlyReader, GarbageIsRefused) {
+    std::string const header = kTriangle.substr(0, kTriangle.find("end_header\n") + 11);
+    for (unsigned seed = 0; seed < 50; ++seed) {
+        EXPECT_THROW(Parse(test::Garbage("", seed)), Error) << seed;
+        EXPECT_THROW(Parse(test::Garbage("ply\n", seed)), Error) << seed;
+        EXPECT_THROW(Parse(test::Garbage(header, seed)), Error) << seed;
+    }
+}
+
+}  // namespace
+}  // namespace limn

@@ -1,0 +1,151 @@
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "engine/images/colour_ramp.h"
+#include "engine/noise/gradient_noise.h"
+#include "engine/noise/surface_noise.h"
+#include "eval/surface/face_places.h"
+#include "eval/surface/surface_sample.h"
+#include "far_ext/error.h"
+#include "far_ext/topology/refiner.h"
+#include "support/meshes.h"
+
+namespace limn {
+namespace {
+
+using engine::ColourRamp;
+using engine::GradientNoise;
+
+TEST(GradientNoise, IsZeroAtWholeCoordinatesAndBounded) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> place(-40.0, 40.0);
+    double least = 0.0, most = 0.0, squares = 0.0;
+    constexpr int kCount = 200000;
+    for (int i = 0; i < kCount; ++i) {
+        double const value = GradientNoise(7, place(random), place(random), place(random));
+        least = std::min(least, value);
+        most = std::max(most, value);
+        squares += value * value;
+    }
+    EXPECT_GE(least, -1.0);
+    EXPECT_LE(most, 1.0);
+    EXPECT_LT(least, -0.4);  // and uses the range: nearly all lies within half of the bound
+    EXPECT_GT(most, 0.4);
+    EXPECT_GT(squares / kCount, 0.01);
+    for (double x : {-3.0, 0.0, 12.0}) EXPECT_EQ(GradientNoise(7, x, 2.0, -5.0), 0.0);
+}
+
+// Two derivatives go through a lattice plane without a jump: differences on both sides agree.
+TEST(GradientNoise, IsSmoothAcrossLatticePlanes) {
+    double const h = 1e-4;
+    for (double y : {0.3, 1.7}) {
+        auto const f = [&](double x) { return GradientNoise(1, x, y, 0.45); };
+        double const left = (f(3.0) - f(3.0 - h)) / h, right = (f(3.0 + h) - f(3.0)) / h;
+        EXPECT_NEAR(left, right, 1e-2 * (1.0 + std::abs(left)));
+        double const bendLeft = (f(3.0) - 2 * f(3.0 - h) + f(3.0 - 2 * h)) / (h * h);
+        double const bendRight = (f(3.0 + 2 * h) - 2 * f(3.0 + h) + f(3.0)) / (h * h);
+        EXPECT_NEAR(bendLeft, bendRight, 0.05);
+    }
+}
+
+// The values every machine must give: a change of the hash or of the arithmetic shows here.
+TEST(GradientNoise, HasTheSameBitsEverywhere) {
+    EXPECT_EQ(GradientNoise(0, 0.5, 0.25, 0.125), -0x1.36ff0d3d5bbf4p-4);
+    EXPECT_EQ(GradientNoise(42, -1234.5, 17.25, 1e6 + 0.375), -0x1.6b37cc72ada3cp-4);
+    EXPECT_NE(GradientNoise(1, 0.5, 0.25, 0.125), GradientNoise(0, 0.5, 0.25, 0.125));
+}
+
+TEST(GradientNoise, TakesAnyNumber) {
+    double const infinite = std::numeric_limits<double>::infinity();
+    for (double x : {1e300, -1e18, infinite, std::nan("")}) EXPECT_EQ(GradientNoise(0, x, 0.5, 0.5), 0.0) << x;
+}
+
+// The spline goes through every colour, and between two equal neighbours of a constant ramp stays there.
+TEST(ColourRamp, InterpolatesItsColours) {
+    std::vector<ColourRamp::Colour> const colours{{0, 0, 0}, {1, 0, 0.5}, {0.2, 0.9, 1}, {1, 1, 1}, {0.3, 0.1, 0}};
+    ColourRamp const ramp(colours);
+    for (size_t i = 0; i < colours.size(); ++i) {
+        auto const colour = ramp.Evaluate(static_cast<double>(i) / 4.0);
+        for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(colour[c], colours[i][c], 1e-12) << i;
+    }
+    ColourRamp const constant({{0.25, 0.5, 0.75}, {0.25, 0.5, 0.75}, {0.25, 0.5, 0.75}});
+    for (double t : {-1.0, 0.1, 0.77, 2.0}) EXPECT_NEAR(constant.Evaluate(t)[1], 0.5, 1e-12);
+    ColourRamp const line({{0, 0, 0}, {1, 1, 1}});  // two colours: the straight line between them
+    EXPECT_NEAR(line.Evaluate(0.3)[0], 0.3, 1e-12);
+}
+
+TEST(ColourRamp, ReadsHexadecimalColoursAndNamesOthers) {
+    EXPECT_EQ(ColourRamp::Parse("#000000,#FF8000").GetText(), "#000000,#ff8000");
+    for (char const* text : {"", "#000000", "#000000,red", "#00000,#ffffff", "#000000,#fffffg", "#000000,"}) {
+        EXPECT_THROW(ColourRamp::Parse(text), Error) << text;
+    }
+}
+
+class SurfaceNoiseOf : public testing::TestWithParam<char const*> {};
+INSTANTIATE_TEST_SUITE_P(Cages, SurfaceNoiseOf,
+                         testing::Values("catmark_cube.obj", "catmark_nonquads.obj", "catmark_torus.obj",
+                                         "catmark_edgeonly.obj", "catmark_dart_edgecorner.obj", "loop_icosahedron.obj",
+                                         "loop_saddle_edgecorner.obj"),
+                         [](auto const& mesh) {
+                             std::string const name = mesh.param;
+                             return name.substr(0, name.find('.'));
+                         });
+
+/// Noise at a corner of a face.
+double AtCorner(engine::SurfaceNoise::Sampler& noise, eval::LimitSurface const& surface, Index face, int corner) {
+    auto const place = eval::GetCornerPlace(surface, face, corner);
+    double value = 0.0;
+    noise.Evaluate(face, place.domain, {&place.s, 1}, {&place.t, 1}, {&value, 1});
+    return value;
+}
+
+// No seam: every face round a vertex has the same noise there, for any number of octaves; and the least and
+// largest value named are met.
+TEST_P(SurfaceNoiseOf, FacesAgreeAtTheirCorners) {
+    engine::Scene const scene = test::LoadData(std::string("opensubdiv_shapes/") + GetParam());
+    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    eval::LimitSurface const surface(*refiner);
+    auto const level = refiner->GetLevel(0);
+    for (int octaves : {1, 2, 4}) {
+        engine::SurfaceNoise const noise(scene, {.octaves = octaves, .seed = 3});
+        engine::SurfaceNoise::Sampler sampler(noise);
+        EXPECT_LT(noise.GetLow(), noise.GetHigh());
+        for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
+            auto const faces = level.GetVertexFaces(vertex);
+            auto const corners = level.GetVertexFaceLocalIndices(vertex);
+            for (int i = 0; i < faces.size(); ++i) {
+                double const value = AtCorner(sampler, surface, faces[i], corners[i]);
+                EXPECT_NEAR(value, AtCorner(sampler, surface, faces[0], corners[0]), 1e-9);
+                EXPECT_GE(value, noise.GetLow() - 1e-9);
+                EXPECT_LE(value, noise.GetHigh() + 1e-9);
+            }
+        }
+    }
+}
+
+// One octave: the surface passes through the noise at every vertex's limit point, which the exact evaluator
+// finds. (Not on a cube, whose A is singular.)
+TEST_P(SurfaceNoiseOf, OneOctavePassesThroughTheNoise) {
+    if (GetParam() == std::string("catmark_cube.obj")) GTEST_SKIP() << "A is singular on a cube";
+    engine::Scene const scene = test::LoadData(std::string("opensubdiv_shapes/") + GetParam());
+    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    eval::LimitSurface const surface(*refiner);
+    eval::FaceTree tree(surface, scene.positions, 3);
+    engine::SurfaceNoise const noise(scene, {.octaves = 1, .frequency = 1.3, .seed = 9});
+    engine::SurfaceNoise::Sampler sampler(noise);
+    auto const level = refiner->GetLevel(0);
+    for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
+        Index const face = level.GetVertexFaces(vertex)[0];
+        int const corner = level.GetVertexFaceLocalIndices(vertex)[0];
+        auto const place = eval::GetCornerPlace(surface, face, corner);
+        tree.Bind(face);
+        double x[3];
+        for (int c = 0; c < 3; ++c) x[c] = 1.3 * eval::EvaluateChannel(tree, place.domain, place.s, place.t, c);
+        EXPECT_NEAR(AtCorner(sampler, surface, face, corner), GradientNoise(9, x[0], x[1], x[2]), 1e-7) << vertex;
+    }
+}
+
+}  // namespace
+}  // namespace limn

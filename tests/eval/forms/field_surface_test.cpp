@@ -1,0 +1,128 @@
+#include "eval/forms/field_surface.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "eval/surface/face_places.h"
+#include "eval/surface/surface_sample.h"
+#include "support/fit_meshes.h"
+#include "support/form_meshes.h"
+#include "support/refined.h"
+#include "support/stencils.h"
+
+namespace limn {
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+/// d0 of a coordinate, on the cage.
+std::vector<double> MakeCoordinateForm(engine::Scene const& scene, size_t axis) {
+    auto const refiner = test::MakeRefiner(scene, 0);
+    auto const level = refiner->GetLevel(0);
+    std::vector<double> form;
+    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+        auto const ends = level.GetEdgeVertices(edge);
+        form.push_back(scene.positions[3 * static_cast<size_t>(std::max(ends[0], ends[1])) + axis] -
+                       scene.positions[3 * static_cast<size_t>(std::min(ends[0], ends[1])) + axis]);
+    }
+    return form;
+}
+
+/// Calls visit(place, vector) for places all over the surface.
+template <class Visit>
+void ForEachPlace(engine::Scene const& scene, eval::FieldSurface const& field, Visit visit) {
+    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    eval::LimitSurface const surface(*refiner);
+    eval::FaceTree tree(surface, scene.positions, 3);
+    eval::FieldSurface::Sampler sampler(field);
+    for (Index face = 0; face < surface.GetNumFaces(); ++face) {
+        if (!surface.HasLimit(face)) continue;
+        tree.Bind(face);
+        eval::ForEachGaussPoint(surface, face, [&](eval::FacePlace const& place, double) {
+            Vector vector;
+            sampler.Evaluate(face, place.domain, {&place.s, 1}, {&place.t, 1}, {&vector, 1});
+            visit(eval::EvaluateSample(tree, place.domain, place.s, place.t, 1.0), vector);
+        });
+    }
+}
+
+/// The gradient of a coordinate is the axis less its part along the limit normal: the largest deviation from that.
+double FindDeviation(engine::Scene const& scene, int levels) {
+    double worst = 0.0;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        auto const form = MakeCoordinateForm(scene, axis);
+        eval::FieldSurface const field(scene.cage, scene.positions, form, levels);
+        ForEachPlace(scene, field, [&](eval::SurfaceSample const& sample, Vector const& vector) {
+            Vector const unit = Vector::Unit(static_cast<Eigen::Index>(axis));
+            worst = std::max(worst, (vector - (unit - unit.dot(sample.normal) * sample.normal)).norm());
+        });
+    }
+    return worst;
+}
+
+TEST(FieldSurface, IsExactInTheRegularInterior) {
+    EXPECT_LT(FindDeviation(test::MakeTorus(9, 7), 0), 1e-12);
+    EXPECT_LT(FindDeviation(test::MakeTriangleTorus(9, 7), 0), 1e-12);
+}
+
+// Elsewhere a few levels make it good: regular faces reach nearer and nearer to what is not.
+TEST(FieldSurface, ConvergesEverywhereElse) {
+    for (auto const& scene : {test::MakeCube(), test::MakeQuadSphere(1), test::MakeIrregularTriangles(7, 6, 2), test::MakeIcosphere(1),
+                              test::MakeDodecahedron(), test::MakeGridWithHole(5, 4)}) {
+        double const coarse = FindDeviation(scene, 2), fine = FindDeviation(scene, 4);
+        EXPECT_LT(fine, 2e-3);
+        EXPECT_LT(fine, 0.3 * coarse);
+    }
+}
+
+// A form without pattern, regular faces: the exact values of level 0 are those of level 2.
+TEST(FieldSurface, DoesNotDependOnTheLevelWhereItIsExact) {
+    for (auto const& scene : {test::MakeTorus(9, 7), test::MakeTriangleTorus(9, 7)}) {
+        auto const refiner = test::MakeRefiner(scene, 0);
+        auto const noise = test::MakeRandomValues(static_cast<size_t>(refiner->GetLevel(0).GetNumEdges()), 4);
+        std::vector<double> const form(noise.begin(), noise.end());
+        std::vector<Vector> found[2];
+        for (int k : {0, 1}) {
+            eval::FieldSurface const field(scene.cage, scene.positions, form, 2 * k);
+            ForEachPlace(scene, field, [&](eval::SurfaceSample const&, Vector const& vector) { found[k].push_back(vector); });
+        }
+        ASSERT_EQ(found[0].size(), found[1].size());
+        for (size_t i = 0; i < found[0].size(); ++i) EXPECT_LT((found[0][i] - found[1][i]).norm(), 1e-10 * (1.0 + found[0][i].norm()));
+    }
+}
+
+// What a texture's seams ask for: the two faces at an edge have one vector there, of any field
+// and on any level, since the refined faces on either side are as near to an extraordinary vertex.
+TEST(FieldSurface, IsTheSameFromBothSidesOfAnEdge) {
+    auto const findJump = [](engine::Scene const& scene, int levels) {
+        auto const refiner = far_ext::CreateRefiner(scene.cage);
+        eval::LimitSurface const surface(*refiner);
+        auto const level = refiner->GetLevel(0);
+        auto const noise = test::MakeRandomValues(static_cast<size_t>(level.GetNumEdges()), 4);
+        eval::FieldSurface const field(scene.cage, scene.positions, std::vector<double>(noise.begin(), noise.end()), levels);
+        eval::FieldSurface::Sampler sampler(field);
+        double jump = 0.0;
+        for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+            auto const faces = level.GetEdgeFaces(edge);
+            if (faces.size() != 2 || level.IsEdgeInfSharp(edge)) continue;
+            auto const locals = level.GetEdgeFaceLocalIndices(edge);
+            for (double tau : {0.11, 0.4, 0.83}) {
+                Vector sides[2];
+                for (int k : {0, 1}) {
+                    auto const place = eval::GetEdgePlace(surface, faces[k], level.GetFaceVertices(faces[k]).size(), locals[k], k == 0 ? tau : 1.0 - tau);
+                    sampler.Evaluate(faces[k], place.domain, {&place.s, 1}, {&place.t, 1}, {&sides[k], 1});
+                }
+                jump = std::max(jump, (sides[0] - sides[1]).norm() / (1.0 + sides[0].norm()));
+            }
+        }
+        return jump;
+    };
+    for (auto const& scene : {test::MakeTorus(9, 7), test::MakeTriangleTorus(9, 7), test::MakeCube(), test::MakeQuadSphere(1),
+                              test::MakeIrregularTriangles(7, 6, 2), test::MakeDodecahedron(), test::MakeGridWithHole(5, 4)}) {
+        for (int levels : {1, 3}) EXPECT_LT(findJump(scene, levels), 1e-11);
+    }
+}
+
+}  // namespace
+}  // namespace limn

@@ -1,0 +1,59 @@
+#include "eval/surface/refined_faces.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/scene/refine.h"
+#include "eval/surface/surface_sample.h"
+#include "far_ext/topology/refiner.h"
+#include "support/meshes.h"
+
+namespace limn {
+namespace {
+
+class RefinedFacesOf : public testing::TestWithParam<char const*> {};
+INSTANTIATE_TEST_SUITE_P(Cages, RefinedFacesOf,
+                         testing::Values("catmark_cube_creases0.obj", "catmark_nonquads.obj", "catmark_hole_test1.obj",
+                                         "catmark_edgenone.obj", "catmark_edgeonly.obj", "catmark_dart_edgecorner.obj",
+                                         "loop_cube_creases0.obj", "loop_saddle_edgecorner.obj", "bilinear_cube.obj"),
+                         [](auto const& mesh) {
+                             std::string const name = mesh.param;
+                             return name.substr(0, name.find('.'));
+                         });
+
+// Two roads to one limit: a place on the cage, and where it lies on the refined cage.
+TEST_P(RefinedFacesOf, TheRefinedCageHasTheSameLimitThere) {
+    engine::Scene const scene = test::LoadData(std::string("opensubdiv_shapes/") + GetParam());
+    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    eval::LimitSurface const surface(*refiner);
+    eval::FaceTree tree(surface, scene.positions, 3);
+    for (int levels : {0, 1, 3}) {
+        engine::Scene const fine = engine::RefineUniformly(scene, levels, false);
+        auto const fineRefiner = far_ext::CreateRefiner(fine.cage);
+        eval::LimitSurface const fineSurface(*fineRefiner);
+        eval::FaceTree fineTree(fineSurface, fine.positions, 3);
+        eval::RefinedFaces const faces(surface, levels);
+        size_t numPlaces = 0;
+        for (Index face = 0; face < surface.GetNumFaces(); ++face) {
+            if (!surface.HasLimit(face)) continue;
+            tree.Bind(face);
+            for (int domain = 0; domain < surface.GetNumDomains(face); ++domain) {
+                for (auto const& [s, t] : {std::pair{0.21, 0.17}, {0.06, 0.9}, {0.55, 0.3}, {0.4, 0.38}}) {
+                    auto const place = faces.Find(face, domain, s, t);
+                    ASSERT_LT(place.face, fineSurface.GetNumFaces());
+                    ASSERT_TRUE(fineSurface.HasLimit(place.face));
+                    fineTree.Bind(place.face);
+                    for (int c = 0; c < 3; ++c) {
+                        EXPECT_NEAR(eval::EvaluateChannel(tree, domain, s, t, c),
+                                    eval::EvaluateChannel(fineTree, place.domain, place.s, place.t, c), 1e-9)
+                            << "face " << face << " domain " << domain << " level " << levels;
+                    }
+                    ++numPlaces;
+                }
+            }
+        }
+        EXPECT_GT(numPlaces, 0u);
+    }
+}
+
+}  // namespace
+}  // namespace limn

@@ -1,0 +1,176 @@
+#include "far_ext/stencils/refined_stencils.h"
+
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <opensubdiv/far/stencilTableFactory.h>
+
+#include "far_ext/error.h"
+#include "far_ext/topology/refiner.h"
+#include "support/meshes.h"
+
+namespace limn::far_ext {
+namespace {
+
+using Mode = RefinedStencilOptions::Mode;
+using FarFactory = Far::StencilTableFactoryReal<double>;
+
+std::unique_ptr<Far::TopologyRefiner> Refine(ControlMesh const& cage, int level) {
+    auto refiner = CreateRefiner(cage);
+    refiner->RefineUniform(Far::TopologyRefiner::UniformOptions(level));
+    return refiner;
+}
+
+/// Far's own table of the last level, in double.
+std::unique_ptr<Far::StencilTableReal<double> const> MakeFarTable(Far::TopologyRefiner const& refiner, Mode mode) {
+    FarFactory::Options options;
+    options.generateIntermediateLevels = false;
+    options.generateOffsets = true;
+    options.interpolationMode = mode == Mode::Vertex    ? FarFactory::INTERPOLATE_VERTEX
+                                : mode == Mode::Varying ? FarFactory::INTERPOLATE_VARYING
+                                                        : FarFactory::INTERPOLATE_FACE_VARYING;
+    return std::unique_ptr<Far::StencilTableReal<double> const>(FarFactory::Create(refiner, options));
+}
+
+/// Every weight is Far's in double, rounded to float; where limn takes Far's table in float, to its bound.
+void ExpectFarsWeights(Far::TopologyRefiner const& refiner, Mode mode, std::string const& name, double bound = 1.2e-7) {
+    auto const theirs = MakeFarTable(refiner, mode);
+    StencilRows const ours = BuildRefinedStencils(refiner, {mode, 0}).Expand();
+    ASSERT_EQ(ours.GetNumStencils(), theirs->GetNumStencils()) << name;
+    ASSERT_EQ(ours.GetNumControlVertices(), theirs->GetNumControlVertices()) << name;
+    double worst = 0.0;
+    Index worstRow = -1;
+    std::map<Index, double> row;
+    for (Index i = 0; i < ours.GetNumStencils(); ++i) {
+        row.clear();
+        for (Index k = ours.GetOffsets()[i]; k < ours.GetOffsets()[i] + ours.GetSizes()[i]; ++k) {
+            row[ours.GetControlIndices()[k]] += ours.GetWeights()[k];
+        }
+        auto const stencil = theirs->GetStencil(i);
+        for (int k = 0; k < stencil.GetSize(); ++k) row[stencil.GetVertexIndices()[k]] -= stencil.GetWeights()[k];
+        for (auto const& [control, difference] : row) {
+            if (std::abs(difference) > worst) {
+                worst = std::abs(difference);
+                worstRow = i;
+            }
+        }
+    }
+    EXPECT_LT(worst, bound) << name << ", row " << worstRow;
+}
+
+TEST(RefinedStencils, VertexWeightsAreFarsOnEveryCage) {
+    for (std::string const& file : test::ListData("opensubdiv_shapes")) {
+        auto const scene = test::LoadData("opensubdiv_shapes/" + file);
+        for (int level = 1; level <= 4; ++level) {
+            if (scene.cage.GetNumFaces() << (2 * level) > 300000) break;  // the rest: simd_evaluator_test
+            ExpectFarsWeights(*Refine(scene.cage, level), Mode::Vertex, fmt::format("{} level {}", file, level));
+        }
+    }
+}
+
+TEST(RefinedStencils, VaryingWeightsAreFarsOnEveryCage) {
+    for (std::string const& file : test::ListData("opensubdiv_shapes")) {
+        auto const scene = test::LoadData("opensubdiv_shapes/" + file);
+        for (int level = 1; level <= 3; ++level) {
+            if (scene.cage.GetNumFaces() << (2 * level) > 20000) break;
+            ExpectFarsWeights(*Refine(scene.cage, level), Mode::Varying, fmt::format("{} level {}", file, level));
+        }
+    }
+}
+
+TEST(RefinedStencils, FaceVaryingWeightsAreFarsOnEveryCageAndRule) {
+    for (std::string const& file : test::ListData("opensubdiv_shapes")) {
+        auto scene = test::LoadData("opensubdiv_shapes/" + file);
+        if (scene.cage.fvarChannels.empty()) continue;
+        for (int rule = 0; rule <= Sdc::Options::FVAR_LINEAR_ALL; ++rule) {
+            scene.cage.options.SetFVarLinearInterpolation(static_cast<Sdc::Options::FVarLinearInterpolation>(rule));
+            for (int level = 1; level <= 3; ++level) {
+                if (scene.cage.GetNumFaces() << (2 * level) > 20000) break;
+                ExpectFarsWeights(*Refine(scene.cage, level), Mode::FaceVarying,
+                                  fmt::format("{} level {} rule {}", file, level, rule));
+            }
+        }
+    }
+}
+
+/// A chart cut from its boundary to its middle: the values end in one that meets itself there.
+TEST(RefinedStencils, FaceVaryingWeightsAreFarsWhereACutEnds) {
+    constexpr int kSize = 6, kCut = 3;
+    std::vector<double> positions;
+    std::vector<std::vector<Index>> faces;
+    FVarChannel channel{(kSize + 1) * (kSize + 1) + kCut, {}};
+    for (int j = 0; j <= kSize; ++j) {
+        for (int i = 0; i <= kSize; ++i) positions.insert(positions.end(), {1.0 * i, 1.0 * j, 0.0});
+    }
+    for (int j = 0; j < kSize; ++j) {
+        for (int i = 0; i < kSize; ++i) {
+            int const corner = j * (kSize + 1) + i;
+            faces.push_back({corner, corner + 1, corner + kSize + 2, corner + kSize + 1});
+            for (int vertex : faces.back()) {
+                int const x = vertex % (kSize + 1), y = vertex / (kSize + 1);
+                bool const isOtherSide = y == kCut && x < kCut && j >= kCut;
+                channel.valueIndices.push_back(isOtherSide ? (kSize + 1) * (kSize + 1) + x : vertex);
+            }
+        }
+    }
+    auto scene = test::MakeScene(positions, faces);
+    scene.cage.fvarChannels.push_back(channel);
+    for (int rule = 0; rule <= Sdc::Options::FVAR_LINEAR_ALL; ++rule) {
+        scene.cage.options.SetFVarLinearInterpolation(static_cast<Sdc::Options::FVarLinearInterpolation>(rule));
+        ExpectFarsWeights(*Refine(scene.cage, 3), Mode::FaceVarying, fmt::format("rule {}", rule));
+    }
+}
+
+TEST(RefinedStencils, BoundaryRulesAreFars) {
+    auto scene = test::LoadData("opensubdiv_shapes/catmark_edgeonly.obj");
+    for (auto rule : {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
+                      Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
+        scene.cage.options.SetVtxBoundaryInterpolation(rule);
+        ExpectFarsWeights(*Refine(scene.cage, 3), Mode::Vertex, fmt::format("boundary rule {}", static_cast<int>(rule)));
+    }
+}
+
+TEST(RefinedStencils, WeightsAreFarsWhereNoTwoFacesAreAlike) {
+    auto scene = test::MakeTorus(40, 40);
+    for (Index v = 0; v + 1 < scene.cage.numVertices; ++v) {
+        if (v % 40 == 39) continue;
+        scene.cage.creaseVertexPairs.insert(scene.cage.creaseVertexPairs.end(), {v, v + 1});
+        scene.cage.creaseSharpness.push_back(0.001f * static_cast<float>(v + 1));
+    }
+    ExpectFarsWeights(*Refine(scene.cage, 2), Mode::Vertex, "a crease of its own at every face", 1e-6);
+}
+
+TEST(RefinedStencils, UnusedVerticesStay) {
+    auto scene = test::MakeCube();
+    scene.cage.numVertices = 10;  // two more that no face uses
+    ExpectFarsWeights(*Refine(scene.cage, 2), Mode::Vertex, "cube and two vertices");
+}
+
+TEST(RefinedStencils, RowsSumToOneAndTorusIsSmall) {
+    auto const scene = test::MakeTorus(24, 16);
+    auto const table = BuildRefinedStencils(*Refine(scene.cage, 4));
+    // 24 * 16 faces, 256 points each; Far's table takes 141 bytes per point.
+    EXPECT_EQ(table.numRows, 24 * 16 * 256);
+    EXPECT_LE(table.blocks.size(), 16u);
+    StencilRows const rows = table.Expand();
+    for (Index i = 0; i < rows.GetNumStencils(); i += 37) {
+        auto const begin = rows.GetWeights().begin() + rows.GetOffsets()[i];
+        EXPECT_NEAR(std::accumulate(begin, begin + rows.GetSizes()[i], 0.0), 1.0, 1e-6);
+    }
+}
+
+TEST(RefinedStencils, WhatCannotBeBuiltIsRefused) {
+    auto const cube = test::MakeCube();
+    EXPECT_THROW(BuildRefinedStencils(*CreateRefiner(cube.cage)), Error);
+    EXPECT_THROW(BuildRefinedStencils(*Refine(cube.cage, 2), {Mode::FaceVarying, 0}), Error);
+    auto const adaptive = CreateRefiner(cube.cage);
+    adaptive->RefineAdaptive(Far::TopologyRefiner::AdaptiveOptions(2));
+    EXPECT_THROW(BuildRefinedStencils(*adaptive), Error);
+}
+
+}  // namespace
+}  // namespace limn::far_ext
