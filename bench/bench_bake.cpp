@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+//
 // A whole bake from mesh file to tiled EXR (normals, 4096 x 4096, half, ZIP) against what OpenEXR's
 // own tiled writer takes for the same finished pixels alone; and with mip levels against OpenEXR's
 // writer followed by maketx.
@@ -10,9 +12,9 @@
 #include "engine/io/mesh_reader.h"
 #include "far_ext/topology/refiner.h"
 #include "harness.h"
-#include "support/files.h"
 #include "peers/maketx.h"
 #include "peers/openexr_tiles.h"
+#include "support/files.h"
 #include "support/meshes.h"
 
 namespace limn::bench {
@@ -47,7 +49,8 @@ void PackFile(std::array<std::vector<float>, 3> const& planes, std::string const
     tbb::parallel_for(0, kNum, [&](int y) {
         for (int x = 0; x < kNum; ++x) {
             size_t const first = (static_cast<size_t>(y) * kSize + x) * kTile;
-            float const* const channels[3] = {&planes[0][first], &planes[1][first], &planes[2][first]};
+            float const* const channels[3] = {&planes[0][first], &planes[1][first],
+                                              &planes[2][first]};
             engine::ExrTile const tile = writer.Pack(0, x, y, channels, kSize);
             std::lock_guard const lock(mutex);
             writer.Write(tile);
@@ -72,14 +75,17 @@ struct Subject {
     std::array<std::vector<float>, 3> planes;
 };
 
-double GetSize(std::string const& path) { return static_cast<double>(std::filesystem::file_size(path)); }
+double GetSize(std::string const& path) {
+    return static_cast<double>(std::filesystem::file_size(path));
+}
 
 /// Writes every file once and compares what OpenEXR reads back.
 void CheckFiles(Subject& subject, bool hasMaketx) {
     BakeFile(subject.mesh, subject.limn, false);
     subject.image = ReadTiledExr(subject.limn);
     size_t numFilled = 0;
-    for (size_t c = 0; c < 3; ++c) subject.planes[c].assign(subject.image.planes[c].begin(), subject.image.planes[c].end());
+    for (size_t c = 0; c < 3; ++c)
+        subject.planes[c].assign(subject.image.planes[c].begin(), subject.image.planes[c].end());
     for (size_t i = 0; i < subject.planes[0].size(); ++i) {
         double length = 0.0;
         for (auto const& plane : subject.planes) length += plane[i] * plane[i];
@@ -91,17 +97,21 @@ void CheckFiles(Subject& subject, bool hasMaketx) {
     PackFile(subject.planes, subject.packed);
     BakeFile(subject.mesh, subject.limnMips, true);
     Check(ReadTiledExr(subject.peer) == subject.image, "OpenEXR's file has other pixels");
-    Check(ReadTiledExr(subject.packed) == subject.image, "the file packed from memory has other pixels");
+    Check(ReadTiledExr(subject.packed) == subject.image,
+          "the file packed from memory has other pixels");
     Check(ReadTiledExr(subject.limnMips) == subject.image, "the file with mips has other pixels");
-    fmt::print("  {:.1f} % of the texels are filled\n", 100.0 * static_cast<double>(numFilled) / (1.0 * kSize * kSize));
+    fmt::print("  {:.1f} % of the texels are filled\n",
+               100.0 * static_cast<double>(numFilled) / (1.0 * kSize * kSize));
     double const ratio = GetSize(subject.limn) / GetSize(subject.peer);
-    fmt::print("  file size: limn {:.2f} MB, OpenEXR {:.2f} MB\n", GetSize(subject.limn) * 1e-6, GetSize(subject.peer) * 1e-6);
-    fmt::print("  => size against OpenEXR {:.3f}, target at most 1.05: {}\n", ratio, ratio <= 1.05 ? "reached" : "MISSED");
+    fmt::print("  file size: limn {:.2f} MB, OpenEXR {:.2f} MB\n", GetSize(subject.limn) * 1e-6,
+               GetSize(subject.peer) * 1e-6);
+    fmt::print("  => size against OpenEXR {:.3f}, target at most 1.05: {}\n", ratio,
+               ratio <= 1.05 ? "reached" : "MISSED");
     if (!hasMaketx) return;
     Check(RunMaketx(subject.peer, subject.peerMips, 1), "maketx failed");
     Check(ReadTiledExr(subject.peerMips) == subject.image, "maketx' file has other pixels");
-    fmt::print("  file size with mips: limn {:.2f} MB, maketx {:.2f} MB\n", GetSize(subject.limnMips) * 1e-6,
-               GetSize(subject.peerMips) * 1e-6);
+    fmt::print("  file size with mips: limn {:.2f} MB, maketx {:.2f} MB\n",
+               GetSize(subject.limnMips) * 1e-6, GetSize(subject.peerMips) * 1e-6);
 }
 
 void Measure(std::string const& name, int numRounds) {
@@ -123,14 +133,19 @@ void Measure(std::string const& name, int numRounds) {
     std::array<Numbers, 2> numbers{};
     for (int T = 1; T <= 2; ++T) {
         auto const add = [&](char const* what, auto work) {
-            return rounds.Add(fmt::format("{}, T{}", what, T), [T, work] { OnThreads(T, work); }, texels);
+            return rounds.Add(
+                fmt::format("{}, T{}", what, T), [T, work] { OnThreads(T, work); }, texels);
         };
         Numbers& n = numbers[T - 1];
-        n.bake = add("limn: read, bake, write", [&] { BakeFile(subject.mesh, subject.limn, false); });
-        n.pack = add("limn: compress and write alone", [&] { PackFile(subject.planes, subject.packed); });
-        n.peer = add("OpenEXR: compress and write alone", [&, T] { WriteTiledExr(subject.peer, subject.image, T); });
+        n.bake =
+            add("limn: read, bake, write", [&] { BakeFile(subject.mesh, subject.limn, false); });
+        n.pack = add("limn: compress and write alone",
+                     [&] { PackFile(subject.planes, subject.packed); });
+        n.peer = add("OpenEXR: compress and write alone",
+                     [&, T] { WriteTiledExr(subject.peer, subject.image, T); });
         if (!hasMaketx) continue;
-        n.mips = add("limn: read, bake, write with mips", [&] { BakeFile(subject.mesh, subject.limnMips, true); });
+        n.mips = add("limn: read, bake, write with mips",
+                     [&] { BakeFile(subject.mesh, subject.limnMips, true); });
         n.peerMips = add("OpenEXR: compress and write, then maketx", [&, T] {
             WriteTiledExr(subject.peer, subject.image, T);
             Check(RunMaketx(subject.peer, subject.peerMips, T), "maketx failed");
@@ -139,11 +154,14 @@ void Measure(std::string const& name, int numRounds) {
     rounds.Run("texels");
     for (int T = 1; T <= 2; ++T) {
         Numbers const& n = numbers[T - 1];
-        rounds.Compare(fmt::format("whole bake against OpenEXR's writer alone, T{}", T).c_str(), n.bake, n.peer, 1.6);
-        rounds.Compare(fmt::format("compress and write alone against OpenEXR's, T{}", T).c_str(), n.pack, n.peer, 2.0);
+        rounds.Compare(fmt::format("whole bake against OpenEXR's writer alone, T{}", T).c_str(),
+                       n.bake, n.peer, 1.6);
+        rounds.Compare(fmt::format("compress and write alone against OpenEXR's, T{}", T).c_str(),
+                       n.pack, n.peer, 2.0);
         if (!hasMaketx) continue;
-        rounds.Compare(fmt::format("whole bake with mips against OpenEXR's writer and maketx, T{}", T).c_str(), n.mips,
-                       n.peerMips, 4.0);
+        rounds.Compare(
+            fmt::format("whole bake with mips against OpenEXR's writer and maketx, T{}", T).c_str(),
+            n.mips, n.peerMips, 4.0);
     }
     rounds.Compare("whole bake, T2 against T1", numbers[1].bake, numbers[0].bake);
 }

@@ -1,8 +1,10 @@
-// The cascadic geometric filter: a level against sparse matrices, its sweep against a stencil table in OpenSubdiv's
-// evaluator and against the memory, the whole cascade against its finest level, and growth.
+// SPDX-License-Identifier: Apache-2.0
+//
+// The cascadic geometric filter: a level against sparse matrices, its sweep against a stencil table
+// in OpenSubdiv's evaluator and against the memory, the whole cascade against its finest level, and
+// growth.
 
 #include "eval/cascade/cascade.h"
-
 #include "far_ext/cascade/cascade_stencils.h"
 #include "harness.h"
 #include "peers/eigen_cascade.h"
@@ -24,13 +26,15 @@ double FindMeanEdge(engine::Scene const& scene) {
     std::vector<Index> const& faces = scene.cage.faceVertices;
     for (size_t i = 0; i < faces.size(); ++i) {
         double const* const p = &scene.positions[3 * static_cast<size_t>(faces[i])];
-        double const* const q = &scene.positions[3 * static_cast<size_t>(faces[i % 3 == 2 ? i - 2 : i + 1])];
+        double const* const q =
+            &scene.positions[3 * static_cast<size_t>(faces[i % 3 == 2 ? i - 2 : i + 1])];
         sum += std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
     }
     return sum / static_cast<double>(faces.size());
 }
 
-/// A torus of quads cut along either diagonal at random (valences 4 to 8), its vertices moved a little.
+/// A torus of quads cut along either diagonal at random (valences 4 to 8), its vertices moved a
+/// little.
 engine::Scene MakeIrregularTorus(int size) {
     engine::Scene scene = test::MakeTriangleTorus(5 * size, 2 * size);
     std::vector<Index>& faces = scene.cage.faceVertices;
@@ -63,20 +67,23 @@ struct Case {
 
     CascadeLevel BuildLevel(int k) const {
         std::vector<Index> const none;
-        return far_ext::BuildCascadeLevel(finestMesh, k == 1 ? none : levels[static_cast<size_t>(k) - 2].vertices,
-                                          far_ext::BoundaryRule::Fixed);
+        return far_ext::BuildCascadeLevel(
+            finestMesh, k == 1 ? none : levels[static_cast<size_t>(k) - 2].vertices,
+            far_ext::BoundaryRule::Fixed);
     }
 
     /// The first so many levels.
     eval::Cascade<float> Run(int sweeps, size_t numLevels = kNumLevels) const {
-        eval::Cascade<float> cascade(scene.positions, {},
-                                     {.solver = eval::CascadeSolver::Jacobi, .width = width, .measuresResidual = false});
+        eval::Cascade<float> cascade(
+            scene.positions, {},
+            {.solver = eval::CascadeSolver::Jacobi, .width = width, .measuresResidual = false});
         for (size_t k = 0; k < numLevels; ++k) cascade.Step(levels[k], sweeps);
         return cascade;
     }
 };
 
-/// The finest level's weights and sweeps, from a surface that is not flat between the cage's vertices.
+/// The finest level's weights and sweeps, from a surface that is not flat between the cage's
+/// vertices.
 struct Level {
     CascadeLevel const& level;
     float width;
@@ -84,26 +91,34 @@ struct Level {
     eval::CascadeOperator<float> op;
 
     explicit Level(Case const& subject)
-        : level(subject.levels.back()), width(static_cast<float>(subject.width)), start(subject.Run(0).GetRows()), metric(start) {
+        : level(subject.levels.back()),
+          width(static_cast<float>(subject.width)),
+          start(subject.Run(0).GetRows()),
+          metric(start) {
         auto const noise = test::MakeRandomValues(3 * metric.size(), 2);
-        float const size = 0.03f * static_cast<float>(FindMeanEdge(subject.scene)) / (1 << kNumLevels);
-        for (size_t i = 0; i < noise.size(); ++i) metric[i / 3][static_cast<Index>(i % 3)] += size * noise[i];
+        float const size =
+            0.03f * static_cast<float>(FindMeanEdge(subject.scene)) / (1 << kNumLevels);
+        for (size_t i = 0; i < noise.size(); ++i)
+            metric[i / 3][static_cast<Index>(i % 3)] += size * noise[i];
         x = next = metric;
     }
 
     void BuildWeights() { eval::BuildOperator(level, metric, width, op); }
     void Sweep() { eval::SweepJacobi(level, op, metric, start, next, x, kNumSweeps); }
 
-    /// Bytes of memory that one sweep must move: rows of x, X0 and the result, each once, and the operator.
+    /// Bytes of memory that one sweep must move: rows of x, X0 and the result, each once, and the
+    /// operator.
     double GetBytesOfSweep() const {
-        double const numRows = level.numUnknowns, numEntries = static_cast<double>(level.neighbours.size());
+        double const numRows = level.numUnknowns,
+                     numEntries = static_cast<double>(level.neighbours.size());
         return numRows * (3 * 16 + 4 + 4 + 4) + numEntries * (4 + 4);
     }
 };
 
 EigenCascade::Points ToPoints(CascadeRows<float> const& rows) {
     EigenCascade::Points points(static_cast<Index>(rows.size()), 3);
-    for (Index i = 0; i < points.rows(); ++i) points.row(i) = rows[i].head<3>().cast<double>().transpose();
+    for (Index i = 0; i < points.rows(); ++i)
+        points.row(i) = rows[i].head<3>().cast<double>().transpose();
     return points;
 }
 
@@ -123,13 +138,18 @@ struct OsdSweep {
     int length;
 
     OsdSweep(Level const& subject, int rowLength)
-        : table(subject.level), source(2 * subject.start.size() * rowLength), target(source.size() / 2), length(rowLength) {
+        : table(subject.level),
+          source(2 * subject.start.size() * rowLength),
+          target(source.size() / 2),
+          length(rowLength) {
         std::vector<float> scales;
-        for (float diagonal : subject.op.diagonals) scales.push_back(diagonal > 0.0f ? 0.75f / diagonal : 0.0f);
+        for (float diagonal : subject.op.diagonals)
+            scales.push_back(diagonal > 0.0f ? 0.75f / diagonal : 0.0f);
         table.SetWeights(subject.level, subject.op.edges, subject.op.masses, scales);
         for (size_t i = 0; i < source.size(); ++i) {
             size_t const row = i / length, n = subject.start.size();
-            source[i] = (row < n ? subject.metric[row] : subject.start[row - n])[static_cast<Index>(i % length)];
+            source[i] = (row < n ? subject.metric[row]
+                                 : subject.start[row - n])[static_cast<Index>(i % length)];
         }
     }
 
@@ -137,20 +157,24 @@ struct OsdSweep {
 
     double FindDifference(CascadeRows<float> const& rows) const {
         float worst = 0.0f;
-        for (size_t i = 0; i < target.size(); ++i) worst = std::max(worst, std::abs(target[i] - rows[i / length][static_cast<Index>(i % length)]));
+        for (size_t i = 0; i < target.size(); ++i)
+            worst = std::max(
+                worst, std::abs(target[i] - rows[i / length][static_cast<Index>(i % length)]));
         return static_cast<double>(worst);
     }
 };
 
 void Judge(char const* what, double value, double target, bool isUpperBound) {
     bool const isReached = isUpperBound ? value <= target : value >= target;
-    fmt::print("  => {}: {:.3f}, target at {} {}: {}\n", what, value, isUpperBound ? "most" : "least", target, isReached ? "reached" : "MISSED");
+    fmt::print("  => {}: {:.3f}, target at {} {}: {}\n", what, value,
+               isUpperBound ? "most" : "least", target, isReached ? "reached" : "MISSED");
     std::fflush(stdout);
 }
 
 void BenchLevel(Case const& subject, int numRounds) {
     Level limn(subject);
-    double const size = test::BoxDiagonal(subject.scene.positions), diffusion = subject.width * subject.width / 2;
+    double const size = test::BoxDiagonal(subject.scene.positions),
+                 diffusion = subject.width * subject.width / 2;
     EigenCascade eigen = MakePeer(subject, limn.start);
     EigenCascade::Points const metric = ToPoints(limn.metric);
     EigenCascade::Points x = metric;
@@ -159,7 +183,8 @@ void BenchLevel(Case const& subject, int numRounds) {
     eigen.Assemble(metric, diffusion);
     eigen.Sweep(x, kNumSweeps, eval::kJacobiDamping);
     double const miss = (ToPoints(limn.next) - x).cwiseAbs().maxCoeff() / size;
-    Check(miss < 1e-6 && (x - metric).cwiseAbs().maxCoeff() > 1e-4 * size, "a level as sparse matrices in double filter it");
+    Check(miss < 1e-6 && (x - metric).cwiseAbs().maxCoeff() > 1e-4 * size,
+          "a level as sparse matrices in double filter it");
     OsdSweep osd3(limn, 3), osd4(limn, 4);
     eval::SweepJacobi(limn.level, limn.op, limn.metric, limn.start, limn.next);
     for (OsdSweep* osd : {&osd3, &osd4}) {
@@ -167,40 +192,53 @@ void BenchLevel(Case const& subject, int numRounds) {
         Check(osd->FindDifference(limn.next) < 1e-6 * size, "a sweep as OpenSubdiv evaluates it");
     }
 
-    fmt::print("\nOne level of {} vertices: weights and {} sweeps; float differs from Eigen's double by {:.1e} of the diagonal\n",
-               limn.level.GetNumRows(), kNumSweeps, miss);
+    fmt::print(
+        "\nOne level of {} vertices: weights and {} sweeps; float differs from Eigen's double by "
+        "{:.1e} of the diagonal\n",
+        limn.level.GetNumRows(), kNumSweeps, miss);
     double const items = limn.level.numUnknowns;
     Rounds rounds(numRounds);
     size_t ours[2], sweeps[2];
     for (int numThreads : {1, 2}) {
         auto const add = [&](char const* what, auto work) {
-            return rounds.Add(fmt::format("limn: {}, T{}", what, numThreads), [work, numThreads] { OnThreads(numThreads, work); }, items);
+            return rounds.Add(
+                fmt::format("limn: {}, T{}", what, numThreads),
+                [work, numThreads] { OnThreads(numThreads, work); }, items);
         };
         add("weights", [&] { limn.BuildWeights(); });
-        sweeps[numThreads - 1] = add("a sweep", [&] { eval::SweepJacobi(limn.level, limn.op, limn.metric, limn.start, limn.next); });
+        sweeps[numThreads - 1] = add("a sweep", [&] {
+            eval::SweepJacobi(limn.level, limn.op, limn.metric, limn.start, limn.next);
+        });
         ours[numThreads - 1] = add("weights and 3 sweeps", [&] {
             limn.BuildWeights();
             limn.Sweep();
         });
     }
-    size_t const theirs = rounds.Add("Eigen: assembly and 3 sweeps", [&] {
-        eigen.Assemble(metric, diffusion);
-        eigen.Sweep(x, kNumSweeps, eval::kJacobiDamping);
-    }, items);
-    rounds.Add("Eigen: 3 sweeps", [&] {
-        eigen.Sweep(x, kNumSweeps, eval::kJacobiDamping);
-    }, items);
-    size_t const three = rounds.Add("Osd::CpuEvaluator: a sweep, length 3", [&] { osd3.Run(); }, items);
-    size_t const four = rounds.Add("Osd::CpuEvaluator: a sweep, length 4", [&] { osd4.Run(); }, items);
+    size_t const theirs = rounds.Add(
+        "Eigen: assembly and 3 sweeps",
+        [&] {
+            eigen.Assemble(metric, diffusion);
+            eigen.Sweep(x, kNumSweeps, eval::kJacobiDamping);
+        },
+        items);
+    rounds.Add("Eigen: 3 sweeps", [&] { eigen.Sweep(x, kNumSweeps, eval::kJacobiDamping); }, items);
+    size_t const three =
+        rounds.Add("Osd::CpuEvaluator: a sweep, length 3", [&] { osd3.Run(); }, items);
+    size_t const four =
+        rounds.Add("Osd::CpuEvaluator: a sweep, length 4", [&] { osd4.Run(); }, items);
     rounds.Run("vertices");
     rounds.Compare("the level against Eigen, T1", ours[0], theirs, 15.0);
     rounds.Compare("the level with two threads against Eigen with one", ours[1], theirs, 20.0);
     rounds.Compare("a sweep against OpenSubdiv, length 3, T1", sweeps[0], three, 2.0);
     rounds.Compare("a sweep against OpenSubdiv, length 4, T1", sweeps[0], four, 2.0);
     double const bandwidth = limn.GetBytesOfSweep() / rounds.Get(sweeps[0]).median;
-    fmt::print("  a sweep must move {:.0f} bytes per vertex (x, X0, result 48, entries {:.0f} with index and weight, mass, diagonal, offset 12): {:.1f} GB/s\n",
-               limn.GetBytesOfSweep() / items, 8.0 * static_cast<double>(limn.level.neighbours.size()) / items, bandwidth * 1e-9);
-    Judge("a sweep's bandwidth over that of copying, T1", bandwidth / rounds.GetCopyBandwidth(), 0.5, false);
+    fmt::print(
+        "  a sweep must move {:.0f} bytes per vertex (x, X0, result 48, entries {:.0f} with index "
+        "and weight, mass, diagonal, offset 12): {:.1f} GB/s\n",
+        limn.GetBytesOfSweep() / items,
+        8.0 * static_cast<double>(limn.level.neighbours.size()) / items, bandwidth * 1e-9);
+    Judge("a sweep's bandwidth over that of copying, T1", bandwidth / rounds.GetCopyBandwidth(),
+          0.5, false);
 }
 
 void BenchWhole(Case const& subject, int numRounds) {
@@ -210,21 +248,35 @@ void BenchWhole(Case const& subject, int numRounds) {
     fmt::print("\nThe whole cascade, {} levels to {} vertices, one thread\n", kNumLevels, items);
     OnThreads(1, [&] {
         Rounds rounds(numRounds);
-        size_t const sweeps = rounds.Add("limn: finest level's weights and 3 sweeps, in place", [&] {
-            finest.BuildWeights();
-            finest.Sweep();
-        }, items);
-        size_t const coarse = rounds.Add("limn: all levels but the finest", [&] { subject.Run(kNumSweeps, kNumLevels - 1); });
-        size_t const whole = rounds.Add("limn: all levels", [&] { subject.Run(kNumSweeps); }, items);
-        size_t const build = rounds.Add("limn: BuildCascadeLevel, finest", [&] { subject.BuildLevel(kNumLevels); }, items);
-        size_t const mesh = rounds.Add("limn: MakeCascadeMesh, finest", [&] { far_ext::MakeCascadeMesh(*refiner, kNumLevels); }, items);
-        rounds.Add("OpenSubdiv: topology of all levels", [&] { test::MakeRefiner(subject.scene, kNumLevels); }, items);
+        size_t const sweeps = rounds.Add(
+            "limn: finest level's weights and 3 sweeps, in place",
+            [&] {
+                finest.BuildWeights();
+                finest.Sweep();
+            },
+            items);
+        size_t const coarse = rounds.Add("limn: all levels but the finest",
+                                         [&] { subject.Run(kNumSweeps, kNumLevels - 1); });
+        size_t const whole =
+            rounds.Add("limn: all levels", [&] { subject.Run(kNumSweeps); }, items);
+        size_t const build = rounds.Add(
+            "limn: BuildCascadeLevel, finest", [&] { subject.BuildLevel(kNumLevels); }, items);
+        size_t const mesh = rounds.Add(
+            "limn: MakeCascadeMesh, finest",
+            [&] { far_ext::MakeCascadeMesh(*refiner, kNumLevels); }, items);
+        rounds.Add(
+            "OpenSubdiv: topology of all levels",
+            [&] { test::MakeRefiner(subject.scene, kNumLevels); }, items);
         rounds.Run("vertices");
         double const all = rounds.Get(whole).median;
-        Judge("all levels over the finest, prolongation and memory included", all / (all - rounds.Get(coarse).median), 1.6, true);
-        fmt::print("  => all levels over the finest's weights and sweeps alone: {:.2f}\n", all / rounds.Get(sweeps).median);
-        Judge("seconds per million vertices to build the finest level", rounds.Get(build).median / items * 1e6, 0.3, true);
-        fmt::print("  => building the finest level over filtering all: {:.2f}\n", (rounds.Get(build).median + rounds.Get(mesh).median) / all);
+        Judge("all levels over the finest, prolongation and memory included",
+              all / (all - rounds.Get(coarse).median), 1.6, true);
+        fmt::print("  => all levels over the finest's weights and sweeps alone: {:.2f}\n",
+                   all / rounds.Get(sweeps).median);
+        Judge("seconds per million vertices to build the finest level",
+              rounds.Get(build).median / items * 1e6, 0.3, true);
+        fmt::print("  => building the finest level over filtering all: {:.2f}\n",
+                   (rounds.Get(build).median + rounds.Get(mesh).median) / all);
     });
 }
 
@@ -240,18 +292,22 @@ void BenchGrowth(int numRounds, bool isLarge) {
             for (int round = -1; round < numRounds; ++round) {
                 auto const start = std::chrono::steady_clock::now();
                 subject.Run(kNumSweeps);
-                best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+                best = std::min(
+                    best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
+                              .count());
             }
         });
         sizes.push_back(count);
         times.push_back(best);
-        fmt::print("  {:>9} vertices: best {:9.2f} ms, {:5.1f} ns per vertex\n", count, best * 1e3, best / count * 1e9);
+        fmt::print("  {:>9} vertices: best {:9.2f} ms, {:5.1f} ns per vertex\n", count, best * 1e3,
+                   best / count * 1e9);
         std::fflush(stdout);
     }
     Judge("exponent of time", FitExponent(sizes, times), 1.05, true);
     rusage usage{};
     ::getrusage(RUSAGE_SELF, &usage);
-    fmt::print("  peak memory of this program, OpenSubdiv's topology included: {:.1f} GB\n", static_cast<double>(usage.ru_maxrss) * 1024e-9);
+    fmt::print("  peak memory of this program, OpenSubdiv's topology included: {:.1f} GB\n",
+               static_cast<double>(usage.ru_maxrss) * 1024e-9);
 }
 
 }  // namespace
@@ -266,5 +322,6 @@ int main(int argc, char** argv) {
         BenchLevel(subject, numRounds);
         BenchWhole(subject, numRounds);
     }
-    BenchGrowth(numRounds, std::find(argv + 1, argv + argc, std::string_view("--large")) != argv + argc);
+    BenchGrowth(numRounds,
+                std::find(argv + 1, argv + argc, std::string_view("--large")) != argv + argc);
 }

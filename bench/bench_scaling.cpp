@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+//
 // How cost grows with the image and with the mesh (it should grow no faster than they do), and how
 // much memory the largest usual bake takes.
 
@@ -18,7 +20,8 @@ struct Case {
     engine::Scene scene;
     std::unique_ptr<Far::TopologyRefiner> refiner;
 
-    explicit Case(engine::Scene made) : scene(std::move(made)), refiner(far_ext::CreateRefiner(scene.cage)) {}
+    explicit Case(engine::Scene made)
+        : scene(std::move(made)), refiner(far_ext::CreateRefiner(scene.cage)) {}
 };
 
 struct Image {
@@ -48,19 +51,26 @@ double EvaluateFaces(Case const& subject) {
     double sum = 0.0;
     for (Index face = 0; face < surface.GetNumFaces(); ++face) {
         sampler.Bind(face);
-        sampler.Evaluate(0, kS, kT, [&](std::span<int const> block, float const* planes, size_t stride) {
-            for (size_t i = 0; i < block.size(); ++i) sum += planes[eval::kNormalX * stride + i];
-        });
+        sampler.Evaluate(0, kS, kT,
+                         [&](std::span<int const> block, float const* planes, size_t stride) {
+                             for (size_t i = 0; i < block.size(); ++i)
+                                 sum += planes[eval::kNormalX * stride + i];
+                         });
     }
     return sum;
 }
 
-void PrintExponent(char const* what, std::vector<double> const& sizes, std::vector<double> const& seconds, bool hasTarget = true) {
-    // What a run costs whatever its size flatters the first fit; the second leaves the smallest size out.
+void PrintExponent(char const* what, std::vector<double> const& sizes,
+                   std::vector<double> const& seconds, bool hasTarget = true) {
+    // What a run costs whatever its size flatters the first fit; the second leaves the smallest
+    // size out.
     double const all = FitExponent(sizes, seconds);
-    double const large = FitExponent({sizes.begin() + 1, sizes.end()}, {seconds.begin() + 1, seconds.end()});
+    double const large =
+        FitExponent({sizes.begin() + 1, sizes.end()}, {seconds.begin() + 1, seconds.end()});
     fmt::print("  => {}: exponent {:.3f}, without the smallest {:.3f}", what, all, large);
-    if (hasTarget) fmt::print(", target at most 1.05: {}", std::max(all, large) <= 1.05 ? "reached" : "MISSED");
+    if (hasTarget)
+        fmt::print(", target at most 1.05: {}",
+                   std::max(all, large) <= 1.05 ? "reached" : "MISSED");
     fmt::print("\n");
 }
 
@@ -74,10 +84,13 @@ void MeasureImages(int numRounds) {
     for (int size : {1024, 2048, 4096, 8192}) {
         Image const image{"normal", size, true, engine::ExrCompression::Zip};
         double const texels = 1.0 * size * size;
-        Check(static_cast<double>(BakeImage(torus, image, folder / "map.exr").texelsCovered) == texels,
+        Check(static_cast<double>(BakeImage(torus, image, folder / "map.exr").texelsCovered) ==
+                  texels,
               "a texel of the torus is not covered");
         sizes.push_back(texels);
-        numbers.push_back(rounds.Add(fmt::format("{}^2", size), [&, image] { BakeImage(torus, image, folder / "map.exr"); }, texels));
+        numbers.push_back(rounds.Add(
+            fmt::format("{}^2", size), [&, image] { BakeImage(torus, image, folder / "map.exr"); },
+            texels));
     }
     rounds.Run("texels");
     std::vector<double> seconds;
@@ -98,18 +111,23 @@ void MeasureMeshes(int numRounds) {
         double const faces = 1.0 * n * n;
         Check(std::abs(EvaluateFaces(torus)) < 4.0 * faces, "normals are longer than one");
         Image const image{"normal", 2 * n, true, engine::ExrCompression::None};
-        Check(static_cast<double>(BakeImage(torus, image, folder / "map.exr").texelsCovered) == 4.0 * faces,
+        Check(static_cast<double>(BakeImage(torus, image, folder / "map.exr").texelsCovered) ==
+                  4.0 * faces,
               "a texel of the torus is not covered");
         sizes.push_back(faces);
-        topology.push_back(rounds.Add(fmt::format("{} faces: OpenSubdiv's topology", n * n),
-                                      [&] { far_ext::CreateRefiner(torus.scene.cage); }, faces));
-        evaluation.push_back(rounds.Add(fmt::format("{} faces: surface and 4 samples per face", n * n),
-                                        [&] { EvaluateFaces(torus); }, faces));
-        bakes.push_back(rounds.Add(fmt::format("{} faces: bake of 4 texels per face, uncompressed", n * n),
-                                   [&, image] { BakeImage(torus, image, folder / "map.exr"); }, faces));
+        topology.push_back(rounds.Add(
+            fmt::format("{} faces: OpenSubdiv's topology", n * n),
+            [&] { far_ext::CreateRefiner(torus.scene.cage); }, faces));
+        evaluation.push_back(rounds.Add(
+            fmt::format("{} faces: surface and 4 samples per face", n * n),
+            [&] { EvaluateFaces(torus); }, faces));
+        bakes.push_back(rounds.Add(
+            fmt::format("{} faces: bake of 4 texels per face, uncompressed", n * n),
+            [&, image] { BakeImage(torus, image, folder / "map.exr"); }, faces));
     }
     rounds.Run("faces");
-    auto const print = [&](char const* what, std::vector<size_t> const& numbers, bool hasTarget = true) {
+    auto const print = [&](char const* what, std::vector<size_t> const& numbers,
+                           bool hasTarget = true) {
         std::vector<double> seconds;
         for (size_t number : numbers) seconds.push_back(rounds.Get(number).median);
         PrintExponent(what, sizes, seconds, hasTarget);
@@ -121,20 +139,29 @@ void MeasureMeshes(int numRounds) {
 
 /// In child processes, so before anything else.
 void MeasurePeaks() {
-    fmt::print("Peak memory of an 8192^2 bake of four float channels (map 'curvature'), two threads, with its mesh\n");
+    fmt::print(
+        "Peak memory of an 8192^2 bake of four float channels (map 'curvature'), two threads, with "
+        "its mesh\n");
     test::TemporaryFolder const folder;
     auto const measure = [&](char const* name, auto makeScene, engine::ExrCompression compression) {
         Memory const memory = MeasureMemory([&] {
             OnThreads(2, [&] {
-                BakeImage(Case(makeScene()), {"curvature", 8192, false, compression}, folder / "map.exr");
+                BakeImage(Case(makeScene()), {"curvature", 8192, false, compression},
+                          folder / "map.exr");
             });
         });
-        fmt::print("  => {}: {:.0f} MiB, target below 1024: {}\n", name, memory.peak, memory.peak < 1024.0 ? "reached" : "MISSED");
+        fmt::print("  => {}: {:.0f} MiB, target below 1024: {}\n", name, memory.peak,
+                   memory.peak < 1024.0 ? "reached" : "MISSED");
     };
-    measure("torus of 4096 faces, ZIP", [] { return test::MakeTorus(64, 64); }, engine::ExrCompression::Zip);
-    measure("torus of 1 M faces, uncompressed", [] { return test::MakeTorus(1000, 1000); }, engine::ExrCompression::None);
+    measure(
+        "torus of 4096 faces, ZIP", [] { return test::MakeTorus(64, 64); },
+        engine::ExrCompression::Zip);
+    measure(
+        "torus of 1 M faces, uncompressed", [] { return test::MakeTorus(1000, 1000); },
+        engine::ExrCompression::None);
     constexpr char const* kHead = "control/ict_head_skin.obj";
-    if (test::HasAsset(kHead)) measure(kHead, [] { return test::LoadAsset(kHead); }, engine::ExrCompression::Zip);
+    if (test::HasAsset(kHead))
+        measure(kHead, [] { return test::LoadAsset(kHead); }, engine::ExrCompression::Zip);
 }
 
 }  // namespace

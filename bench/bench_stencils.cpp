@@ -1,6 +1,8 @@
-// Stencil tables of about a million refined vertices, applied again and again: limn's compiled tables
-// against OpenSubdiv's CPU evaluator (its general path at length 3, its fast path at length 4) and a plain
-// loop over rows; building them against Far::StencilTableFactory; their size.
+// SPDX-License-Identifier: Apache-2.0
+//
+// Stencil tables of about a million refined vertices, applied again and again: limn's compiled
+// tables against OpenSubdiv's CPU evaluator (its general path at length 3, its fast path at length
+// 4) and a plain loop over rows; building them against Far::StencilTableFactory; their size.
 
 #include <random>
 
@@ -33,15 +35,20 @@ std::vector<float> MakeValues(Index numPoints, int length, unsigned seed) {
     return values;
 }
 
-void CheckEqual(std::vector<float> const& ours, std::vector<float> const& theirs, std::string const& what) {
+void CheckEqual(std::vector<float> const& ours, std::vector<float> const& theirs,
+                std::string const& what) {
     double worst = 0.0;
-    for (size_t i = 0; i < ours.size(); ++i) worst = std::max(worst, std::abs(static_cast<double>(ours[i]) - theirs[i]));
-    Check(ours.size() == theirs.size() && worst < 1e-6, fmt::format("{} differs from OpenSubdiv by {:.1e}", what, worst));
+    for (size_t i = 0; i < ours.size(); ++i)
+        worst = std::max(worst, std::abs(static_cast<double>(ours[i]) - theirs[i]));
+    Check(ours.size() == theirs.size() && worst < 1e-6,
+          fmt::format("{} differs from OpenSubdiv by {:.1e}", what, worst));
 }
 
-void EvaluateCompiled(CompiledStencils const& table, std::vector<float> const& source, std::vector<float>& target, int length) {
+void EvaluateCompiled(CompiledStencils const& table, std::vector<float> const& source,
+                      std::vector<float>& target, int length) {
     Osd::BufferDescriptor const desc(0, length, length);
-    SimdEvaluator::EvalStencils(source.data(), desc, target.data(), desc, table, 0, table.GetNumStencils());
+    SimdEvaluator::EvalStencils(source.data(), desc, target.data(), desc, table, 0,
+                                table.GetNumStencils());
 }
 
 /// Runs `work` with SSE2 only, then as before.
@@ -53,25 +60,32 @@ void WithSse2(Work const& work) {
     eval::SelectInstructionSet(before);
 }
 
-void PrintFigure(char const* what, double value, char const* unit, std::optional<double> atMost = {}) {
+void PrintFigure(char const* what, double value, char const* unit,
+                 std::optional<double> atMost = {}) {
     fmt::print("  => {}: {:.2f} {}", what, value, unit);
-    if (atMost) fmt::print(", target at most {}: {}", *atMost, value <= *atMost ? "reached" : "MISSED");
+    if (atMost)
+        fmt::print(", target at most {}: {}", *atMost, value <= *atMost ? "reached" : "MISSED");
     fmt::print("\n");
 }
 
-void MeasureMesh(char const* name, engine::Scene const& scene, int level, Targets const& targets, int numRounds) {
+void MeasureMesh(char const* name, engine::Scene const& scene, int level, Targets const& targets,
+                 int numRounds) {
     auto const refiner = far_ext::CreateRefiner(scene.cage);
     refiner->RefineUniform(Far::TopologyRefiner::UniformOptions(level));
     auto const far = MakeFarTable(*refiner);
     CompiledStencils const ours(far_ext::BuildRefinedStencils(*refiner));
     CompiledStencils const fromFar = CompiledStencils::Compile(*far);
     double const numRows = far->GetNumStencils();
-    fmt::print("\n{}, level {}: {} control and {} refined vertices, {:.1f} weights each; {} on this CPU\n", name, level,
-               far->GetNumControlVertices(), far->GetNumStencils(), static_cast<double>(far->GetWeights().size()) / numRows,
-               eval::GetName(eval::GetInstructionSet()));
+    fmt::print(
+        "\n{}, level {}: {} control and {} refined vertices, {:.1f} weights each; {} on this CPU\n",
+        name, level, far->GetNumControlVertices(), far->GetNumStencils(),
+        static_cast<double>(far->GetWeights().size()) / numRows,
+        eval::GetName(eval::GetInstructionSet()));
 
-    auto const source3 = MakeValues(far->GetNumControlVertices(), 3, 1), source4 = MakeValues(far->GetNumControlVertices(), 4, 2);
-    std::vector<float> ours3(static_cast<size_t>(numRows) * 3), theirs3(ours3), ours4(static_cast<size_t>(numRows) * 4), theirs4(ours4);
+    auto const source3 = MakeValues(far->GetNumControlVertices(), 3, 1),
+               source4 = MakeValues(far->GetNumControlVertices(), 4, 2);
+    std::vector<float> ours3(static_cast<size_t>(numRows) * 3), theirs3(ours3),
+        ours4(static_cast<size_t>(numRows) * 4), theirs4(ours4);
     EvaluateWithOsd(*far, source3.data(), theirs3.data(), 3);
     EvaluateWithOsd(*far, source4.data(), theirs4.data(), 4);
     EvaluateCompiled(ours, source3, ours3, 3);
@@ -86,27 +100,46 @@ void MeasureMesh(char const* name, engine::Scene const& scene, int level, Target
     Rounds rounds(numRounds);
     // Every evaluation several times in a row, as an animation does it.
     auto const add = [&](char const* what, auto const& evaluate) {
-        return rounds.Add(fmt::format("{}, {} times", what, kTimes), [evaluate] { for (int i = 0; i < kTimes; ++i) evaluate(); }, numRows * kTimes);
+        return rounds.Add(
+            fmt::format("{}, {} times", what, kTimes),
+            [evaluate] {
+                for (int i = 0; i < kTimes; ++i) evaluate();
+            },
+            numRows * kTimes);
     };
-    size_t const osd3 = add("OpenSubdiv, length 3", [&] { EvaluateWithOsd(*far, source3.data(), theirs3.data(), 3); });
-    size_t const osd4 = add("OpenSubdiv, length 4", [&] { EvaluateWithOsd(*far, source4.data(), theirs4.data(), 4); });
-    size_t const plain = add("plain rows, -O3, length 3", [&] { EvaluatePlainRows(*far, source3.data(), theirs3.data()); });
+    size_t const osd3 = add("OpenSubdiv, length 3",
+                            [&] { EvaluateWithOsd(*far, source3.data(), theirs3.data(), 3); });
+    size_t const osd4 = add("OpenSubdiv, length 4",
+                            [&] { EvaluateWithOsd(*far, source4.data(), theirs4.data(), 4); });
+    size_t const plain = add("plain rows, -O3, length 3",
+                             [&] { EvaluatePlainRows(*far, source3.data(), theirs3.data()); });
     size_t const limn3 = add("limn, length 3", [&] { EvaluateCompiled(ours, source3, ours3, 3); });
     size_t const limn4 = add("limn, length 4", [&] { EvaluateCompiled(ours, source4, ours4, 4); });
-    size_t const sse3 = add("limn, length 3, SSE2 only", [&] { WithSse2([&] { EvaluateCompiled(ours, source3, ours3, 3); }); });
-    size_t const sse4 = add("limn, length 4, SSE2 only", [&] { WithSse2([&] { EvaluateCompiled(ours, source4, ours4, 4); }); });
-    size_t const compiled = add("limn, Far's table compiled, length 3", [&] { EvaluateCompiled(fromFar, source3, ours3, 3); });
+    size_t const sse3 = add("limn, length 3, SSE2 only",
+                            [&] { WithSse2([&] { EvaluateCompiled(ours, source3, ours3, 3); }); });
+    size_t const sse4 = add("limn, length 4, SSE2 only",
+                            [&] { WithSse2([&] { EvaluateCompiled(ours, source4, ours4, 4); }); });
+    size_t const compiled = add("limn, Far's table compiled, length 3",
+                                [&] { EvaluateCompiled(fromFar, source3, ours3, 3); });
     size_t const raw = add("limn, Far's table as it stands, length 3", [&] {
         Osd::BufferDescriptor const desc(0, 3, 3);
-        SimdEvaluator::EvalStencils(source3.data(), desc, ours3.data(), desc, far->GetSizes().data(), far->GetOffsets().data(),
-                                    far->GetControlIndices().data(), far->GetWeights().data(), 0, far->GetNumStencils());
+        SimdEvaluator::EvalStencils(source3.data(), desc, ours3.data(), desc,
+                                    far->GetSizes().data(), far->GetOffsets().data(),
+                                    far->GetControlIndices().data(), far->GetWeights().data(), 0,
+                                    far->GetNumStencils());
     });
-    size_t const theirBuild = rounds.Add("build: Far::StencilTableFactory", [&] { MakeFarTable(*refiner); }, numRows);
-    size_t const ourBuild = rounds.Add("build: limn, from the topology", [&] { CompiledStencils const table(far_ext::BuildRefinedStencils(*refiner)); }, numRows);
-    size_t const compile = rounds.Add("build: limn, from Far's table", [&] { CompiledStencils::Compile(*far); }, numRows);
+    size_t const theirBuild =
+        rounds.Add("build: Far::StencilTableFactory", [&] { MakeFarTable(*refiner); }, numRows);
+    size_t const ourBuild = rounds.Add(
+        "build: limn, from the topology",
+        [&] { CompiledStencils const table(far_ext::BuildRefinedStencils(*refiner)); }, numRows);
+    size_t const compile = rounds.Add(
+        "build: limn, from Far's table", [&] { CompiledStencils::Compile(*far); }, numRows);
     rounds.Run("vertices");
 
-    auto const third = [](std::optional<double> target) { return target ? std::optional(std::ceil(*target / 3.0 * 100.0) / 100.0) : target; };
+    auto const third = [](std::optional<double> target) {
+        return target ? std::optional(std::ceil(*target / 3.0 * 100.0) / 100.0) : target;
+    };
     rounds.Compare("limn over OpenSubdiv, length 3", limn3, osd3, targets.overLength3);
     rounds.Compare("limn over OpenSubdiv, length 4", limn4, osd4, targets.overLength4);
     rounds.Compare("the same with SSE2 only, length 3", sse3, osd3, third(targets.overLength3));
@@ -114,14 +147,18 @@ void MeasureMesh(char const* name, engine::Scene const& scene, int level, Target
     rounds.Compare("limn over plain rows", limn3, plain);
     rounds.Compare("Far's table compiled, over OpenSubdiv, length 3", compiled, osd3);
     rounds.Compare("Far's table as it stands, over OpenSubdiv, length 3", raw, osd3);
-    rounds.Compare("build from the topology over Far's factory", ourBuild, theirBuild, targets.build);
+    rounds.Compare("build from the topology over Far's factory", ourBuild, theirBuild,
+                   targets.build);
     rounds.Compare("compiling Far's table over making it", compile, theirBuild);
-    PrintFigure("limn's table", static_cast<double>(ours.GetMemory()) / numRows, "bytes per vertex", targets.memory);
-    PrintFigure("Far's table compiled", static_cast<double>(fromFar.GetMemory()) / numRows, "bytes per vertex");
+    PrintFigure("limn's table", static_cast<double>(ours.GetMemory()) / numRows, "bytes per vertex",
+                targets.memory);
+    PrintFigure("Far's table compiled", static_cast<double>(fromFar.GetMemory()) / numRows,
+                "bytes per vertex");
     PrintFigure("Far's table", GetMemory(*far) / numRows, "bytes per vertex");
 }
 
-/// Rows of one float, as 1-forms have them: one per edge, 8.5 weights on average, over edges near by.
+/// Rows of one float, as 1-forms have them: one per edge, 8.5 weights on average, over edges near
+/// by.
 far_ext::StencilRows MakeFormRows(Index numRows) {
     Index const numControls = numRows / 4;
     std::mt19937 random(3);
@@ -130,7 +167,9 @@ far_ext::StencilRows MakeFormRows(Index numRows) {
         int const size = 5 + static_cast<int>(random() % 8);
         for (int k = 0; k < size; ++k) {
             float const weight = static_cast<float>(random()) * 0x1p-35f;
-            rows.AddEntry(std::min(numControls - 1, row / 4 + 11 * k + static_cast<Index>(random() % 10)), &weight);
+            rows.AddEntry(
+                std::min(numControls - 1, row / 4 + 11 * k + static_cast<Index>(random() % 10)),
+                &weight);
         }
         rows.EndRow();
     }
@@ -141,17 +180,25 @@ void MeasureOneColumn(int numRounds) {
     auto const rows = MakeFormRows(3 << 20);
     auto const ours = CompiledStencils::Compile(rows.GetView(), {.isSliced = true});
     double const numRows = rows.GetNumStencils();
-    fmt::print("\nOne column: {} rows, {:.1f} weights each\n", rows.GetNumStencils(), static_cast<double>(rows.GetWeights().size()) / numRows);
+    fmt::print("\nOne column: {} rows, {:.1f} weights each\n", rows.GetNumStencils(),
+               static_cast<double>(rows.GetWeights().size()) / numRows);
     auto const source = MakeValues(rows.GetNumControlVertices(), 1, 4);
     std::vector<float> target(static_cast<size_t>(numRows)), expected(target);
     EvaluateWithOsd(rows, source.data(), expected.data(), 1);
     EvaluateCompiled(ours, source, target, 1);
     CheckEqual(target, expected, "one column");
     Rounds rounds(numRounds);
-    size_t const osd = rounds.Add("OpenSubdiv, length 1", [&] { EvaluateWithOsd(rows, source.data(), expected.data(), 1); }, numRows);
-    size_t const limn = rounds.Add("limn, sliced", [&] { EvaluateCompiled(ours, source, target, 1); }, numRows);
-    size_t const sse = rounds.Add("limn, sliced, SSE2 only", [&] { WithSse2([&] { EvaluateCompiled(ours, source, target, 1); }); }, numRows);
-    size_t const two = rounds.Add("limn, sliced, two threads", [&] { OnThreads(2, [&] { EvaluateCompiled(ours, source, target, 1); }); }, numRows);
+    size_t const osd = rounds.Add(
+        "OpenSubdiv, length 1", [&] { EvaluateWithOsd(rows, source.data(), expected.data(), 1); },
+        numRows);
+    size_t const limn =
+        rounds.Add("limn, sliced", [&] { EvaluateCompiled(ours, source, target, 1); }, numRows);
+    size_t const sse = rounds.Add(
+        "limn, sliced, SSE2 only",
+        [&] { WithSse2([&] { EvaluateCompiled(ours, source, target, 1); }); }, numRows);
+    size_t const two = rounds.Add(
+        "limn, sliced, two threads",
+        [&] { OnThreads(2, [&] { EvaluateCompiled(ours, source, target, 1); }); }, numRows);
     rounds.Run("rows");
     rounds.Compare("limn over OpenSubdiv, length 1", limn, osd, 8.0);
     rounds.Compare("the same with SSE2 only", sse, osd, 2.67);
@@ -176,23 +223,35 @@ void MeasureGrowth(int numRounds) {
         CompiledStencils table(far_ext::BuildRefinedStencils(*refiner));
         Index const numRows = table.GetNumStencils();
         auto source = MakeValues(table.GetNumControlVertices(), 3, 5);
-        cases.push_back(std::make_unique<Case>(Case{std::move(refiner), std::move(table), std::move(source), std::vector<float>(static_cast<size_t>(numRows) * 3)}));
+        cases.push_back(
+            std::make_unique<Case>(Case{std::move(refiner), std::move(table), std::move(source),
+                                        std::vector<float>(static_cast<size_t>(numRows) * 3)}));
         Case& made = *cases.back();
         sizes.push_back(numRows);
         // Small ones several times over, or the clock would be measured.
         int const times = static_cast<int>(std::max(1.0, 2e6 / numRows));
-        evaluations.push_back(rounds.Add(fmt::format("evaluate {} vertices, {} times", numRows, times), [&made, times] {
-            for (int i = 0; i < times; ++i) EvaluateCompiled(made.table, made.source, made.target, 3);
-        }, 1.0 * numRows * times));
-        builds.push_back(rounds.Add(fmt::format("build {} vertices, {} times", numRows, times), [&made, times] {
-            for (int i = 0; i < times; ++i) far_ext::BuildRefinedStencils(*made.refiner);
-        }, 1.0 * numRows * times));
+        evaluations.push_back(rounds.Add(
+            fmt::format("evaluate {} vertices, {} times", numRows, times),
+            [&made, times] {
+                for (int i = 0; i < times; ++i)
+                    EvaluateCompiled(made.table, made.source, made.target, 3);
+            },
+            1.0 * numRows * times));
+        builds.push_back(rounds.Add(
+            fmt::format("build {} vertices, {} times", numRows, times),
+            [&made, times] {
+                for (int i = 0; i < times; ++i) far_ext::BuildRefinedStencils(*made.refiner);
+            },
+            1.0 * numRows * times));
     }
     rounds.Run("vertices");
     auto const fit = [&](char const* what, std::vector<size_t> const& numbers) {
         std::vector<double> seconds;
-        for (size_t i = 0; i < sizes.size(); ++i) seconds.push_back(rounds.Get(numbers[i]).median / std::floor(std::max(1.0, 2e6 / sizes[i])));
-        PrintFigure(fmt::format("{}, exponent", what).c_str(), FitExponent(sizes, seconds), "", 1.05);
+        for (size_t i = 0; i < sizes.size(); ++i)
+            seconds.push_back(rounds.Get(numbers[i]).median /
+                              std::floor(std::max(1.0, 2e6 / sizes[i])));
+        PrintFigure(fmt::format("{}, exponent", what).c_str(), FitExponent(sizes, seconds), "",
+                    1.05);
     };
     fit("evaluation", evaluations);
     fit("build", builds);
@@ -210,9 +269,15 @@ void MeasureThreads(int numRounds) {
     OnThreads(2, [&] { EvaluateCompiled(ours, source, target, 3); });
     CheckEqual(target, expected, "two threads");
     Rounds rounds(numRounds);
-    size_t const osd = rounds.Add("OpenSubdiv, length 3, one thread", [&] { EvaluateWithOsd(*far, source.data(), expected.data(), 3); });
-    size_t const one = rounds.Add("limn, one thread", [&] { OnThreads(1, [&] { EvaluateCompiled(ours, source, target, 3); }); });
-    size_t const two = rounds.Add("limn, two threads", [&] { OnThreads(2, [&] { EvaluateCompiled(ours, source, target, 3); }); });
+    size_t const osd = rounds.Add("OpenSubdiv, length 3, one thread", [&] {
+        EvaluateWithOsd(*far, source.data(), expected.data(), 3);
+    });
+    size_t const one = rounds.Add("limn, one thread", [&] {
+        OnThreads(1, [&] { EvaluateCompiled(ours, source, target, 3); });
+    });
+    size_t const two = rounds.Add("limn, two threads", [&] {
+        OnThreads(2, [&] { EvaluateCompiled(ours, source, target, 3); });
+    });
     rounds.Run();
     rounds.Compare("limn with two threads over OpenSubdiv with one", two, osd);
     rounds.Compare("limn with two threads over one", two, one);
@@ -229,14 +294,19 @@ int main(int argc, char** argv) {
         bench::MeasureMesh("Torus", test::MakeTorus(256, 256), 2, {}, numRounds);
         bench::MeasureMesh("Torus", test::MakeTorus(128, 128), 3, {{}, {}, 5.0, 8.0}, numRounds);
         bench::MeasureMesh("Torus", test::MakeTorus(64, 64), 4, {20.0, 7.0, 5.0, 8.0}, numRounds);
-        bench::MeasureMesh("Torus with 7 % of its quads inset", bench::MakeInsetTorus(114, 0.07), 3, {{}, {}, 5.0, 8.0}, numRounds);
-        bench::MeasureMesh("Torus with 7 % of its quads inset", bench::MakeInsetTorus(57, 0.07), 4, {20.0, 7.0, 5.0, 8.0}, numRounds);
+        bench::MeasureMesh("Torus with 7 % of its quads inset", bench::MakeInsetTorus(114, 0.07), 3,
+                           {{}, {}, 5.0, 8.0}, numRounds);
+        bench::MeasureMesh("Torus with 7 % of its quads inset", bench::MakeInsetTorus(57, 0.07), 4,
+                           {20.0, 7.0, 5.0, 8.0}, numRounds);
         auto triangles = test::MakeTriangleTorus(52, 52);
         triangles.cage.scheme = Sdc::SCHEME_CATMARK;
-        bench::MeasureMesh("Torus of triangles under Catmull-Clark", triangles, 4, {20.0, 7.0, 5.0, 8.0}, numRounds);
+        bench::MeasureMesh("Torus of triangles under Catmull-Clark", triangles, 4,
+                           {20.0, 7.0, 5.0, 8.0}, numRounds);
         constexpr char const* kHead = "control/ict_head_skin.obj";
-        if (test::HasAsset(kHead)) bench::MeasureMesh(kHead, test::LoadAsset(kHead), 3, {{}, {}, 5.0, 8.0}, numRounds);
-        else fmt::print("{} is missing: skipped\n", kHead);
+        if (test::HasAsset(kHead))
+            bench::MeasureMesh(kHead, test::LoadAsset(kHead), 3, {{}, {}, 5.0, 8.0}, numRounds);
+        else
+            fmt::print("{} is missing: skipped\n", kHead);
         bench::MeasureOneColumn(numRounds);
         bench::MeasureGrowth(numRounds);
     });

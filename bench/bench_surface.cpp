@@ -1,5 +1,8 @@
-// Samples of the limit surface, given as (face, s, t) and grouped by face, to position, normal and the
-// four curvatures: limn against OpenSubdiv's patch evaluation with second derivatives. One thread.
+// SPDX-License-Identifier: Apache-2.0
+//
+// Samples of the limit surface, given as (face, s, t) and grouped by face, to position, normal and
+// the four curvatures: limn against OpenSubdiv's patch evaluation with second derivatives. One
+// thread.
 
 #include <array>
 #include <random>
@@ -28,13 +31,19 @@ struct Samples {
     std::vector<double> s, t;
 
     size_t GetNum() const { return s.size(); }
-    std::span<double const> GetS(Index face) const { return {&s[first[face]], first[face + 1] - first[face]}; }
-    std::span<double const> GetT(Index face) const { return {&t[first[face]], first[face + 1] - first[face]}; }
+    std::span<double const> GetS(Index face) const {
+        return {&s[first[face]], first[face + 1] - first[face]};
+    }
+    std::span<double const> GetT(Index face) const {
+        return {&t[first[face]], first[face + 1] - first[face]};
+    }
 };
 
-/// The same number of samples in every face, row by row over a grid, moved at random within its cell.
+/// The same number of samples in every face, row by row over a grid, moved at random within its
+/// cell.
 Samples MakeSamples(Index numFaces, bool isTriangle) {
-    int const side = static_cast<int>(std::lround(std::sqrt(static_cast<double>(kNumSamples) / numFaces)));
+    int const side =
+        static_cast<int>(std::lround(std::sqrt(static_cast<double>(kNumSamples) / numFaces)));
     std::mt19937 random(1);
     auto const next = [&] { return (static_cast<double>(random()) + 0.5) / 4294967296.0; };
     Samples samples;
@@ -90,20 +99,25 @@ struct Subject {
     }
 
     void EvaluateLimn() {
-        VisitBlocks([&](size_t first, std::span<int const> block, float const* planes, size_t stride) {
+        VisitBlocks([&](size_t first, std::span<int const> block, float const* planes,
+                        size_t stride) {
             bool const isRow = block.back() - block.front() + 1 == static_cast<int>(block.size());
             for (int c = 0; c < kNumChannels; ++c) {
                 float const* const from = planes + static_cast<size_t>(c) * stride;
                 float* const to = limn.data() + static_cast<size_t>(c) * planeSize + first;
-                if (isRow) std::copy_n(from, block.size(), to + block.front());
-                else for (size_t i = 0; i < block.size(); ++i) to[block[i]] = from[i];
+                if (isRow)
+                    std::copy_n(from, block.size(), to + block.front());
+                else
+                    for (size_t i = 0; i < block.size(); ++i) to[block[i]] = from[i];
             }
         });
     }
 
     /// As a bake does it: results are used block by block, while they are in the cache.
     void EvaluateLimnInBlocks() {
-        VisitBlocks([&](size_t, std::span<int const>, float const* planes, size_t) { checksum += planes[0]; });
+        VisitBlocks([&](size_t, std::span<int const>, float const* planes, size_t) {
+            checksum += planes[0];
+        });
     }
 
     void EvaluateBfr() {
@@ -122,7 +136,7 @@ struct Subject {
     BfrSurfaces surfaces;
     Samples samples;
     std::vector<Osd::PatchCoord> coords;
-    size_t planeSize;         ///< floats from channel to channel: no power of two, for the cache's sake
+    size_t planeSize;  ///< floats from channel to channel: no power of two, for the cache's sake
     std::vector<float> limn;  ///< [channel][sample]
     std::vector<float> osd, bfr;
     double checksum = 0.0;
@@ -143,7 +157,8 @@ struct Error {
 struct PeerErrors {
     Error second, mean;
 
-    void Add(float const* sample, std::array<std::array<double, 6>, 3> const& truth, double trueMean) {
+    void Add(float const* sample, std::array<std::array<double, 6>, 3> const& truth,
+             double trueMean) {
         std::array<Eigen::Vector3d, 6> d;
         for (int k = 0; k < 6; ++k) {
             for (int c = 0; c < 3; ++c) {
@@ -167,10 +182,14 @@ void CheckResults(Subject& subject, double tolerance) {
     for (Index face = 0; face < subject.scene.cage.GetNumFaces(); ++face) {
         tree.Bind(face);
         size_t const step = kCheckStep;
-        for (size_t i = (samples.first[face] + step - 1) / step * step; i < samples.first[face + 1]; i += step) {
+        for (size_t i = (samples.first[face] + step - 1) / step * step; i < samples.first[face + 1];
+             i += step) {
             double const s = samples.s[i], t = samples.t[i];
             eval::SurfaceSample const truth = eval::EvaluateSample(tree, 0, s, t, 1.0);
-            auto const get = [&](int c) { return static_cast<double>(subject.limn[static_cast<size_t>(c) * subject.planeSize + i]); };
+            auto const get = [&](int c) {
+                return static_cast<double>(
+                    subject.limn[static_cast<size_t>(c) * subject.planeSize + i]);
+            };
             for (int c = 0; c < 3; ++c) {
                 position.Add(get(eval::kPositionX + c), truth.position[c]);
                 normal.Add(get(eval::kNormalX + c), truth.normal[c]);
@@ -184,9 +203,12 @@ void CheckResults(Subject& subject, double tolerance) {
             if (point.isMoved) continue;
             std::array<std::array<double, 6>, 3> derivatives;
             for (int c = 0; c < 3; ++c) {
-                double const* const coefficients = point.coefficients + c * tree.GetNumCoefficients();
-                derivatives[c] = subject.surface.IsLoop() ? eval::EvaluateTrianglePolynomial(coefficients, point.x, point.y)
-                                                          : eval::EvaluateQuadPolynomial(coefficients, point.x, point.y);
+                double const* const coefficients =
+                    point.coefficients + c * tree.GetNumCoefficients();
+                derivatives[c] =
+                    subject.surface.IsLoop()
+                        ? eval::EvaluateTrianglePolynomial(coefficients, point.x, point.y)
+                        : eval::EvaluateQuadPolynomial(coefficients, point.x, point.y);
                 for (int k = 3; k < 6; ++k) derivatives[c][k] *= point.scale * point.scale;
             }
             osd.Add(&subject.osd[i * OsdPatches::kLength], derivatives, truth.curvature.mean);
@@ -194,15 +216,21 @@ void CheckResults(Subject& subject, double tolerance) {
         }
     }
     fmt::print("  largest error / largest value, against double:\n");
-    fmt::print("    limn         position {:.1e}  normal {:.1e}  mean {:.1e}  gaussian {:.1e}  k1 {:.1e}  k2 {:.1e}\n",
-               position.Get(), normal.Get(), mean.Get(), gaussian.Get(), k1.Get(), k2.Get());
-    fmt::print("    EvalPatches  mean {:.1e}  second derivatives {:.1e}\n", osd.mean.Get(), osd.second.Get());
-    fmt::print("    Bfr          mean {:.1e}  second derivatives {:.1e}\n", bfr.mean.Get(), bfr.second.Get());
-    Check(position.Get() <= 1e-6 && normal.Get() <= 1e-5, "positions or normals differ from double");
+    fmt::print(
+        "    limn         position {:.1e}  normal {:.1e}  mean {:.1e}  gaussian {:.1e}  k1 {:.1e}  "
+        "k2 {:.1e}\n",
+        position.Get(), normal.Get(), mean.Get(), gaussian.Get(), k1.Get(), k2.Get());
+    fmt::print("    EvalPatches  mean {:.1e}  second derivatives {:.1e}\n", osd.mean.Get(),
+               osd.second.Get());
+    fmt::print("    Bfr          mean {:.1e}  second derivatives {:.1e}\n", bfr.mean.Get(),
+               bfr.second.Get());
+    Check(position.Get() <= 1e-6 && normal.Get() <= 1e-5,
+          "positions or normals differ from double");
     constexpr double kTarget = 1e-6;
-    fmt::print("  => mean curvature in float: error {:.1e}, target at most {:.0e}: {}\n", mean.Get(), kTarget,
-               mean.Get() <= kTarget ? "reached" : "MISSED");
-    Check(mean.Get() <= tolerance, fmt::format("mean curvature is off by {:.1e}, more than {:.0e}", mean.Get(), tolerance));
+    fmt::print("  => mean curvature in float: error {:.1e}, target at most {:.0e}: {}\n",
+               mean.Get(), kTarget, mean.Get() <= kTarget ? "reached" : "MISSED");
+    Check(mean.Get() <= tolerance,
+          fmt::format("mean curvature is off by {:.1e}, more than {:.0e}", mean.Get(), tolerance));
 }
 
 double ShareOfExtraordinaryFaces(eval::LimitSurface const& surface) {
@@ -215,13 +243,16 @@ struct Targets {
     std::optional<double> best, sse2;
 };
 
-void Measure(char const* name, engine::Scene scene, double tolerance, Targets const& targets, int numRounds) {
+void Measure(char const* name, engine::Scene scene, double tolerance, Targets const& targets,
+             int numRounds) {
     constexpr int kLevel = 5;
     Subject subject(std::move(scene), kLevel);
     double const num = static_cast<double>(subject.samples.GetNum());
-    fmt::print("\n{}: {} faces, {:.1f} % of them not plain patches, {} samples; EvalPatches: level {}, {} patches\n", name,
-               subject.scene.cage.GetNumFaces(), 100.0 * ShareOfExtraordinaryFaces(subject.surface), subject.samples.GetNum(),
-               kLevel, subject.patches.GetNumPatches());
+    fmt::print(
+        "\n{}: {} faces, {:.1f} % of them not plain patches, {} samples; EvalPatches: level {}, {} "
+        "patches\n",
+        name, subject.scene.cage.GetNumFaces(), 100.0 * ShareOfExtraordinaryFaces(subject.surface),
+        subject.samples.GetNum(), kLevel, subject.patches.GetNumPatches());
     CheckResults(subject, tolerance);
 
     InstructionSet const widest = eval::GetInstructionSet();
@@ -234,13 +265,18 @@ void Measure(char const* name, engine::Scene scene, double tolerance, Targets co
         };
     };
     auto const stored = [](Subject& s) { s.EvaluateLimn(); };
-    size_t const limn = rounds.Add(fmt::format("limn, {}, 10 channels", eval::GetName(widest)), with(widest, stored), num);
-    size_t const blocks = rounds.Add("  the same, results left in the cache",
-                                     with(widest, [](Subject& s) { s.EvaluateLimnInBlocks(); }), num);
-    size_t const sse2 = rounds.Add("limn, sse2, 10 channels", with(InstructionSet::Sse2, stored), num);
-    size_t const osd = rounds.Add("Osd::CpuEvaluator::EvalPatches, 18 floats",
-                                  [&] { subject.patches.Evaluate(subject.coords, subject.osd.data()); }, num);
-    size_t const bfr = rounds.Add("Bfr::Surface::Evaluate, 18 floats", [&] { subject.EvaluateBfr(); }, num);
+    size_t const limn = rounds.Add(fmt::format("limn, {}, 10 channels", eval::GetName(widest)),
+                                   with(widest, stored), num);
+    size_t const blocks =
+        rounds.Add("  the same, results left in the cache",
+                   with(widest, [](Subject& s) { s.EvaluateLimnInBlocks(); }), num);
+    size_t const sse2 =
+        rounds.Add("limn, sse2, 10 channels", with(InstructionSet::Sse2, stored), num);
+    size_t const osd = rounds.Add(
+        "Osd::CpuEvaluator::EvalPatches, 18 floats",
+        [&] { subject.patches.Evaluate(subject.coords, subject.osd.data()); }, num);
+    size_t const bfr =
+        rounds.Add("Bfr::Surface::Evaluate, 18 floats", [&] { subject.EvaluateBfr(); }, num);
     rounds.Run("samples");
     rounds.Compare("limn against EvalPatches", limn, osd, targets.best);
     rounds.Compare("limn with sse2 against EvalPatches", sse2, osd, targets.sse2);
@@ -256,9 +292,12 @@ int main(int argc, char** argv) {
     int const numRounds = bench::GetNumRounds(argc, argv);
     bench::OnThreads(1, [&] {
         bench::Measure("Regular torus", test::MakeTorus(64, 64), 1e-6, {25.0, {}}, numRounds);
-        bench::Measure("Torus with few insets", bench::MakeInsetTorus(64, 0.0044), 1e-3, {15.0, {}}, numRounds);
-        bench::Measure("Torus with 7 % of its quads inset", bench::MakeInsetTorus(57, 0.07), 1e-3, {15.0, {}}, numRounds);
-        bench::Measure("Regular torus of triangles (Loop)", test::MakeTriangleTorus(45, 46), 1e-5, {}, numRounds);
+        bench::Measure("Torus with few insets", bench::MakeInsetTorus(64, 0.0044), 1e-3, {15.0, {}},
+                       numRounds);
+        bench::Measure("Torus with 7 % of its quads inset", bench::MakeInsetTorus(57, 0.07), 1e-3,
+                       {15.0, {}}, numRounds);
+        bench::Measure("Regular torus of triangles (Loop)", test::MakeTriangleTorus(45, 46), 1e-5,
+                       {}, numRounds);
     });
     return 0;
 }

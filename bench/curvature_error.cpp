@@ -1,6 +1,8 @@
-// How wrong is curvature next to an extraordinary vertex? Prints the README's table: the worst texel of a
-// 256 x 256 map of mean curvature over one face of a smooth Catmull-Clark fan, OpenSubdiv's defaults and limn
-// against OpenSubdiv isolated as deep as it goes, in double.
+// SPDX-License-Identifier: Apache-2.0
+//
+// How wrong is curvature next to an extraordinary vertex? Prints the README's table: the worst
+// texel of a 256 x 256 map of mean curvature over one face of a smooth Catmull-Clark fan,
+// OpenSubdiv's defaults and limn against OpenSubdiv isolated as deep as it goes, in double.
 
 #include <cmath>
 #include <memory>
@@ -20,7 +22,8 @@ namespace Bfr = OpenSubdiv::Bfr;
 
 constexpr int kSize = 256;
 
-std::vector<double> MapByBfr(Far::TopologyRefiner const& refiner, std::vector<double> const& positions, int level) {
+std::vector<double> MapByBfr(Far::TopologyRefiner const& refiner,
+                             std::vector<double> const& positions, int level) {
     Bfr::SurfaceFactory::Options options;
     if (level > 0) {
         options.SetApproxLevelSmooth(level);
@@ -35,14 +38,16 @@ std::vector<double> MapByBfr(Far::TopologyRefiner const& refiner, std::vector<do
         for (int x = 0; x < kSize; ++x) {
             double const st[2] = {(x + 0.5) / kSize, (y + 0.5) / kSize};
             Eigen::Vector3d p, s, t, ss, sT, tt;
-            surface->Evaluate(st, points.data(), {3}, p.data(), s.data(), t.data(), ss.data(), sT.data(), tt.data());
+            surface->Evaluate(st, points.data(), {3}, p.data(), s.data(), t.data(), ss.data(),
+                              sT.data(), tt.data());
             map.push_back(eval::ComputeCurvature(s, t, ss, sT, tt, 1.0).mean);
         }
     }
     return map;
 }
 
-std::vector<double> MapByLimn(Far::TopologyRefiner const& refiner, std::vector<double> const& positions) {
+std::vector<double> MapByLimn(Far::TopologyRefiner const& refiner,
+                              std::vector<double> const& positions) {
     eval::LimitSurface const surface(refiner);
     eval::FaceTree tree(surface, positions, 3);
     eval::SurfaceSampler sampler(tree, eval::Quantity::Curvature, 1.0f);
@@ -54,11 +59,13 @@ std::vector<double> MapByLimn(Far::TopologyRefiner const& refiner, std::vector<d
         }
     }
     sampler.Bind(0);
-    sampler.Evaluate(0, s, t, [&](std::span<int const> samples, float const* planes, size_t stride) {
-        for (size_t i = 0; i < samples.size(); ++i) {
-            map[static_cast<size_t>(samples[i])] = static_cast<double>(planes[eval::kMean * stride + i]);
-        }
-    });
+    sampler.Evaluate(0, s, t,
+                     [&](std::span<int const> samples, float const* planes, size_t stride) {
+                         for (size_t i = 0; i < samples.size(); ++i) {
+                             map[static_cast<size_t>(samples[i])] =
+                                 static_cast<double>(planes[eval::kMean * stride + i]);
+                         }
+                     });
     return map;
 }
 

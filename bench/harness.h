@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -21,9 +22,9 @@
 #include <tbb/global_control.h>
 #include <unistd.h>
 
-/// What the bench programs share. Numbers of one machine are only worth as ratios of one run, so all
-/// variants run in turns, round after round, with the memory's copy bandwidth of the same rounds
-/// beside them. A program whose result is wrong ends with status 1 and reports no times.
+/// What the bench programs share. Numbers of one machine are only worth as ratios of one run, so
+/// all variants run in turns, round after round, with the memory's copy bandwidth of the same
+/// rounds beside them. A program whose result is wrong ends with status 1 and reports no times.
 namespace limn::bench {
 
 /// Ends the program if a result is wrong.
@@ -80,14 +81,16 @@ public:
     /// One round to warm up, then the timed ones; prints a line per variant.
     void Run(char const* unit = "items") {
         std::vector<char> from(kCopiedBytes, 1), to(kCopiedBytes, 2);
-        _copy = Add("copy 128 MiB (the memory's limit)", [&] { std::memcpy(to.data(), from.data(), kCopiedBytes); });
+        _copy = Add("copy 128 MiB (the memory's limit)",
+                    [&] { std::memcpy(to.data(), from.data(), kCopiedBytes); });
         double const loadBefore = GetLoadAverage();
         for (int round = -1; round < _numRounds; ++round) {
             for (Variant& variant : _variants) {
                 auto const start = std::chrono::steady_clock::now();
                 double const startProcessor = GetProcessorTime();
                 variant.run();
-                std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - start;
+                std::chrono::duration<double> const elapsed =
+                    std::chrono::steady_clock::now() - start;
                 if (round < 0) continue;
                 variant.seconds.push_back(elapsed.count());
                 variant.processorSeconds.push_back(GetProcessorTime() - startProcessor);
@@ -96,14 +99,19 @@ public:
         for (size_t i = 0; i < _variants.size(); ++i) {
             Variant const& variant = _variants[i];
             Time const time = Get(i);
-            fmt::print("  {:<52} median {:9.2f} ms   best {:9.2f} ms", variant.name, time.median * 1e3, time.best * 1e3);
-            if (variant.items > 0.0) fmt::print("   {:8.2f} M {}/s", variant.items / time.median * 1e-6, unit);
+            fmt::print("  {:<52} median {:9.2f} ms   best {:9.2f} ms", variant.name,
+                       time.median * 1e3, time.best * 1e3);
+            if (variant.items > 0.0)
+                fmt::print("   {:8.2f} M {}/s", variant.items / time.median * 1e-6, unit);
             if (i == _copy) fmt::print("   {:8.1f} GB/s", GetCopyBandwidth() * 1e-9);
             fmt::print("\n");
         }
-        double const loadAfter = GetLoadAverage(), numCores = static_cast<double>(std::thread::hardware_concurrency());
-        fmt::print("  {} rounds; load average {:.2f} before, {:.2f} after\n", _numRounds, loadBefore, loadAfter);
-        if (std::max(loadBefore, loadAfter) > numCores + 0.5) fmt::print("  BUSY: others used the machine; do not quote these ratios\n");
+        double const loadAfter = GetLoadAverage(),
+                     numCores = static_cast<double>(std::thread::hardware_concurrency());
+        fmt::print("  {} rounds; load average {:.2f} before, {:.2f} after\n", _numRounds,
+                   loadBefore, loadAfter);
+        if (std::max(loadBefore, loadAfter) > numCores + 0.5)
+            fmt::print("  BUSY: others used the machine; do not quote these ratios\n");
         std::fflush(stdout);
     }
 
@@ -112,21 +120,26 @@ public:
             std::sort(values.begin(), values.end());
             return values;
         };
-        auto const seconds = sort(_variants[variant].seconds), processor = sort(_variants[variant].processorSeconds);
+        auto const seconds = sort(_variants[variant].seconds),
+                   processor = sort(_variants[variant].processorSeconds);
         return {seconds[seconds.size() / 2], seconds.front(), processor[processor.size() / 2]};
     }
 
     /// Bytes per second, read and written, of copying memory in the same rounds.
-    double GetCopyBandwidth() const { return 2.0 * static_cast<double>(kCopiedBytes) / Get(_copy).median; }
+    double GetCopyBandwidth() const {
+        return 2.0 * static_cast<double>(kCopiedBytes) / Get(_copy).median;
+    }
 
-    /// Prints how many times faster `ours` is than `theirs`, by medians, by best times, and by processor
-    /// time, which other programs on the machine disturb least.
-    void Compare(char const* what, size_t ours, size_t theirs, std::optional<double> target = {}) const {
+    /// Prints how many times faster `ours` is than `theirs`, by medians, by best times, and by
+    /// processor time, which other programs on the machine disturb least.
+    void Compare(char const* what, size_t ours, size_t theirs,
+                 std::optional<double> target = {}) const {
         Time const a = Get(ours), b = Get(theirs);
         double const ratio = b.median / a.median;
-        fmt::print("  => {}: {:.2f}x (best times {:.2f}x, processor {:.2f}x)", what, ratio, b.best / a.best,
-                   b.processor / a.processor);
-        if (target) fmt::print(", target {}x: {}", *target, ratio >= *target ? "reached" : "MISSED");
+        fmt::print("  => {}: {:.2f}x (best times {:.2f}x, processor {:.2f}x)", what, ratio,
+                   b.best / a.best, b.processor / a.processor);
+        if (target)
+            fmt::print(", target {}x: {}", *target, ratio >= *target ? "reached" : "MISSED");
         fmt::print("\n");
         std::fflush(stdout);
     }
@@ -149,7 +162,8 @@ private:
 /// Runs `work` on a number of threads of the one pool.
 template <class Work>
 void OnThreads(int numThreads, Work const& work) {
-    tbb::global_control const limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(numThreads));
+    tbb::global_control const limit(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<size_t>(numThreads));
     work();
 }
 

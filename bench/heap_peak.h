@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <atomic>
@@ -14,9 +15,11 @@ struct HeapCount {
 
     void Add(void* block) {
         if (!block) return;
-        long const size = now.fetch_add(static_cast<long>(malloc_usable_size(block))) + static_cast<long>(malloc_usable_size(block));
+        long const size = now.fetch_add(static_cast<long>(malloc_usable_size(block))) +
+                          static_cast<long>(malloc_usable_size(block));
         long seen = peak.load();
-        while (seen < size && !peak.compare_exchange_weak(seen, size)) {}
+        while (seen < size && !peak.compare_exchange_weak(seen, size)) {
+        }
     }
     void Remove(void* block) {
         if (block) now -= static_cast<long>(malloc_usable_size(block));
@@ -25,8 +28,8 @@ struct HeapCount {
 
 inline constinit HeapCount heapCount;
 
-/// Largest number of MiB that `work` had on the heap at a time. A first run, which fills what lives on
-/// (tables of libraries, buffers of streams), is not counted.
+/// Largest number of MiB that `work` had on the heap at a time. A first run, which fills what lives
+/// on (tables of libraries, buffers of streams), is not counted.
 template <class Work>
 double MeasureHeapPeak(Work const& work) {
     work();
@@ -71,7 +74,9 @@ void* memalign(size_t alignment, size_t size) {
     return block;
 }
 
-void* aligned_alloc(size_t alignment, size_t size) { return memalign(alignment, size); }
+void* aligned_alloc(size_t alignment, size_t size) {
+    return memalign(alignment, size);
+}
 
 int posix_memalign(void** block, size_t alignment, size_t size) {
     *block = memalign(alignment, size);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <random>
@@ -8,8 +9,8 @@
 
 namespace limn::bench {
 
-/// A torus of quads of which a share, chosen at random, gets a smaller quad set into it: vertices of
-/// valence 3 inside and 5 round it (more where insets meet).
+/// A torus of quads of which a share, chosen at random, gets a smaller quad set into it: vertices
+/// of valence 3 inside and 5 round it (more where insets meet).
 inline engine::Scene MakeInsetTorus(int n, double share) {
     engine::Scene const torus = test::MakeTorus(n, n);
     std::vector<double> positions = torus.positions;
@@ -25,7 +26,8 @@ inline engine::Scene MakeInsetTorus(int n, double share) {
         for (int corner = 0; corner < 4; ++corner) {
             for (int c = 0; c < 3; ++c) {
                 double sum = 4.0 * torus.positions[static_cast<size_t>(outer[corner]) * 3 + c];
-                for (int k = 0; k < 4; ++k) sum += torus.positions[static_cast<size_t>(outer[k]) * 3 + c];
+                for (int k = 0; k < 4; ++k)
+                    sum += torus.positions[static_cast<size_t>(outer[k]) * 3 + c];
                 positions.push_back(sum / 8.0);
             }
         }

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Finds libdeflate and defines LibDeflate::deflate (Debian 12's package has no CMake configuration).
 find_path(LibDeflate_INCLUDE_DIR libdeflate.h)
 find_library(LibDeflate_LIBRARY deflate)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Finds METIS and defines METIS::metis (Debian 12's package has no CMake configuration).
 find_path(METIS_INCLUDE_DIR metis.h)
 find_library(METIS_LIBRARY metis)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Finds OpenImageIO and defines OpenImageIO::OpenImageIO.
 #
 # Debian's package configuration names include folders of packages that libopenimageio-dev does not

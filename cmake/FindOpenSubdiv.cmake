@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Finds OpenSubdiv's headers and its CPU library, and defines OpenSubdiv::osdCPU.
 #
 # Debian's own package configuration names a static library that the package does not ship, so it

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The install tree: headers under include/limn, the floors as limn::far_ext, limn::eval, limn::engine.
 include(CMakePackageConfigHelpers)
 

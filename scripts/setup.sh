@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Shell functions shared by ./limn and ./check: Debian packages and the build.
 # Everything they say goes to stderr; stdout belongs to the program.
 

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # tsan_tbb.sh SOURCE: builds libtbb from oneTBB's source folder for the preset 'tsan', into build/tsan/tbb.
 #
 # The thread sanitizer sees only synchronisation in code that it has compiled. With Debian's libtbb it misses

@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 namespace limn::bench {
 
-/// A plain loop over the rows of a table with Far's accessors, three floats per point: what -O3 makes of it
-/// without any thought about the layout.
+/// A plain loop over the rows of a table with Far's accessors, three floats per point: what -O3
+/// makes of it without any thought about the layout.
 template <class Table>
 void EvaluatePlainRows(Table const& table, float const* source, float* target) {
     int const* const sizes = table.GetSizes().data();

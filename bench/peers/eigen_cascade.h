@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <vector>
@@ -9,14 +10,15 @@
 
 namespace limn::bench {
 
-/// A level of the cascade as others write it down: M + L assembled from the triangles' entries into a sparse matrix,
-/// sweeps by products with it, all in double.
+/// A level of the cascade as others write it down: M + L assembled from the triangles' entries into
+/// a sparse matrix, sweeps by products with it, all in double.
 class EigenCascade {
 public:
     using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
     /// \param triangles  3 vertices each
-    EigenCascade(std::vector<Index> triangles, Points start) : _triangles(std::move(triangles)), _start(std::move(start)) {
+    EigenCascade(std::vector<Index> triangles, Points start)
+        : _triangles(std::move(triangles)), _start(std::move(start)) {
         _entries.reserve(4 * _triangles.size() + static_cast<size_t>(_start.rows()));
     }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <HYPRE.h>
@@ -9,8 +10,8 @@
 
 namespace limn::bench {
 
-/// hypre's conjugate gradients preconditioned by BoomerAMG, one process. The matrix is handed over beforehand;
-/// Solve sets up once and solves one right-hand side after another.
+/// hypre's conjugate gradients preconditioned by BoomerAMG, one process. The matrix is handed over
+/// beforehand; Solve sets up once and solves one right-hand side after another.
 class HypreLaplacian {
 public:
     explicit HypreLaplacian(PinnedLaplacian const& problem) : _problem(problem) {
@@ -24,10 +25,13 @@ public:
         HYPRE_IJMatrixInitialize(_matrix);
         std::vector<HYPRE_BigInt> columns;
         for (HYPRE_BigInt row = 0; row <= last; ++row) {
-            int const begin = problem.matrix.outerIndexPtr()[row], end = problem.matrix.outerIndexPtr()[row + 1];
-            columns.assign(problem.matrix.innerIndexPtr() + begin, problem.matrix.innerIndexPtr() + end);
+            int const begin = problem.matrix.outerIndexPtr()[row],
+                      end = problem.matrix.outerIndexPtr()[row + 1];
+            columns.assign(problem.matrix.innerIndexPtr() + begin,
+                           problem.matrix.innerIndexPtr() + end);
             HYPRE_Int count = end - begin;
-            HYPRE_IJMatrixSetValues(_matrix, 1, &count, &row, columns.data(), problem.matrix.valuePtr() + begin);
+            HYPRE_IJMatrixSetValues(_matrix, 1, &count, &row, columns.data(),
+                                    problem.matrix.valuePtr() + begin);
         }
         HYPRE_IJMatrixAssemble(_matrix);
         for (HYPRE_BigInt row = 0; row <= last; ++row) _rows.push_back(row);
@@ -42,7 +46,8 @@ public:
         HYPRE_Solver solver, amg;
         HYPRE_BoomerAMGCreate(&amg);
         HYPRE_BoomerAMGSetPrintLevel(amg, 0);
-        HYPRE_BoomerAMGSetCoarsenType(amg, 8);  // PMIS, extended interpolation: fastest of those tried in two dimensions
+        HYPRE_BoomerAMGSetCoarsenType(
+            amg, 8);  // PMIS, extended interpolation: fastest of those tried in two dimensions
         HYPRE_BoomerAMGSetInterpType(amg, 6);
         HYPRE_BoomerAMGSetRelaxType(amg, 6);
         HYPRE_BoomerAMGSetNumSweeps(amg, 1);
@@ -57,13 +62,15 @@ public:
         Eigen::MatrixX3d result(_problem.matrix.rows(), 3);
         for (Index c = 0; c < 3; ++c) {
             Eigen::VectorXd const zero = Eigen::VectorXd::Zero(result.rows());
-            HYPRE_IJVector const b = MakeVector(_problem.rightSide.col(c).data()), x = MakeVector(zero.data());
+            HYPRE_IJVector const b = MakeVector(_problem.rightSide.col(c).data()),
+                                 x = MakeVector(zero.data());
             HYPRE_ParVector right, left;
             HYPRE_IJVectorGetObject(b, reinterpret_cast<void**>(&right));
             HYPRE_IJVectorGetObject(x, reinterpret_cast<void**>(&left));
             if (c == 0) HYPRE_ParCSRPCGSetup(solver, matrix, right, left);
             HYPRE_ParCSRPCGSolve(solver, matrix, right, left);
-            HYPRE_IJVectorGetValues(x, static_cast<HYPRE_Int>(_rows.size()), _rows.data(), result.col(c).data());
+            HYPRE_IJVectorGetValues(x, static_cast<HYPRE_Int>(_rows.size()), _rows.data(),
+                                    result.col(c).data());
             HYPRE_IJVectorDestroy(b);
             HYPRE_IJVectorDestroy(x);
         }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -17,9 +18,9 @@ namespace limn::bench {
 
 namespace Osd = OpenSubdiv::Osd;
 
-/// OpenSubdiv's patches as its users evaluate them: adaptive refinement to `level`, Gregory ends, one
-/// EvalPatches call for all samples. Tables, refined points and the patch of every sample are made
-/// beforehand and not timed.
+/// OpenSubdiv's patches as its users evaluate them: adaptive refinement to `level`, Gregory ends,
+/// one EvalPatches call for all samples. Tables, refined points and the patch of every sample are
+/// made beforehand and not timed.
 class OsdPatches {
 public:
     static constexpr int kLength = 18;  ///< floats per sample: P, Ps, Pt, Pss, Pst, Ptt
@@ -42,10 +43,11 @@ public:
 
     void Evaluate(std::span<Osd::PatchCoord const> coords, float* out) const {
         Osd::BufferDescriptor const from(0, 3, 3), to(0, 3, kLength);
-        Osd::CpuEvaluator::EvalPatches(_points.data(), from, out, to, out + 3, to, out + 6, to, out + 9, to, out + 12, to,
-                                       out + 15, to, static_cast<int>(coords.size()), coords.data(),
-                                       _cpuTable->GetPatchArrayBuffer(), _cpuTable->GetPatchIndexBuffer(),
-                                       _cpuTable->GetPatchParamBuffer());
+        Osd::CpuEvaluator::EvalPatches(
+            _points.data(), from, out, to, out + 3, to, out + 6, to, out + 9, to, out + 12, to,
+            out + 15, to, static_cast<int>(coords.size()), coords.data(),
+            _cpuTable->GetPatchArrayBuffer(), _cpuTable->GetPatchIndexBuffer(),
+            _cpuTable->GetPatchParamBuffer());
     }
 
     int GetNumPatches() const { return _table->GetNumPatchesTotal(); }
@@ -57,17 +59,20 @@ private:
         options.generateOffsets = options.generateIntermediateLevels = true;
         std::unique_ptr<Far::StencilTable const> stencils(Factory::Create(*_refiner, options));
         if (auto const* const local = _table->GetLocalPointStencilTable()) {
-            if (auto const* const all = Factory::AppendLocalPointStencilTable(*_refiner, stencils.get(), local)) {
+            if (auto const* const all =
+                    Factory::AppendLocalPointStencilTable(*_refiner, stencils.get(), local)) {
                 stencils.reset(all);
             }
         }
-        int const numCage = static_cast<int>(positions.size() / 3), numRefined = stencils->GetNumStencils();
+        int const numCage = static_cast<int>(positions.size() / 3),
+                  numRefined = stencils->GetNumStencils();
         _points.assign(positions.begin(), positions.end());
         _points.resize(static_cast<size_t>(numCage + numRefined) * 3);
         if (numRefined == 0) return;
-        Osd::CpuEvaluator::EvalStencils(_points.data(), Osd::BufferDescriptor(0, 3, 3), _points.data(),
-                                        Osd::BufferDescriptor(3 * numCage, 3, 3), stencils->GetSizes().data(),
-                                        stencils->GetOffsets().data(), stencils->GetControlIndices().data(),
+        Osd::CpuEvaluator::EvalStencils(_points.data(), Osd::BufferDescriptor(0, 3, 3),
+                                        _points.data(), Osd::BufferDescriptor(3 * numCage, 3, 3),
+                                        stencils->GetSizes().data(), stencils->GetOffsets().data(),
+                                        stencils->GetControlIndices().data(),
                                         stencils->GetWeights().data(), 0, numRefined);
     }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cmath>
@@ -9,12 +10,16 @@
 
 namespace limn::bench {
 
-/// Plain progressive interpolation, P += M - A P, with A as a stencil table in OpenSubdiv's evaluator: what its
-/// users would write. Rows of 3 floats.
+/// Plain progressive interpolation, P += M - A P, with A as a stencil table in OpenSubdiv's
+/// evaluator: what its users would write. Rows of 3 floats.
 class OsdProgressive {
 public:
     OsdProgressive(far_ext::LimitMatrix const& A, std::vector<double> const& M)
-        : _A(A), _weights(A.MakeFloatWeights()), _data(M.begin(), M.end()), _control(_data.size()), _limit(_data.size()) {}
+        : _A(A),
+          _weights(A.MakeFloatWeights()),
+          _data(M.begin(), M.end()),
+          _control(_data.size()),
+          _limit(_data.size()) {}
 
     /// Iterates until max |M - A P| <= tolerance. Returns the number of applications of A.
     int Solve(double tolerance) {
@@ -22,8 +27,10 @@ public:
         Osd::BufferDescriptor const rows(0, 3, 3);
         _control = _data;
         for (int count = 1;; ++count) {
-            Osd::CpuEvaluator::EvalStencils(_control.data(), rows, _limit.data(), rows, _A.GetSizes().data(), _A.GetOffsets().data(),
-                                            _A.GetControlIndices().data(), _weights.data(), 0, _A.GetNumStencils());
+            Osd::CpuEvaluator::EvalStencils(_control.data(), rows, _limit.data(), rows,
+                                            _A.GetSizes().data(), _A.GetOffsets().data(),
+                                            _A.GetControlIndices().data(), _weights.data(), 0,
+                                            _A.GetNumStencils());
             float largest = 0.0f;
             for (size_t i = 0; i < _data.size(); i += 3) {
                 float square = 0.0f;

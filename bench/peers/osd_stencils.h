@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -18,7 +19,8 @@ inline std::unique_ptr<Far::StencilTable const> MakeFarTable(Far::TopologyRefine
     Far::StencilTableFactory::Options options;
     options.generateIntermediateLevels = false;
     options.generateOffsets = true;
-    return std::unique_ptr<Far::StencilTable const>(Far::StencilTableFactory::Create(refiner, options));
+    return std::unique_ptr<Far::StencilTable const>(
+        Far::StencilTableFactory::Create(refiner, options));
 }
 
 inline double GetMemory(Far::StencilTable const& table) {
@@ -30,10 +32,11 @@ inline double GetMemory(Far::StencilTable const& table) {
 template <class Table>
 void EvaluateWithOsd(Table const& table, float const* source, float* target, int length) {
     Osd::BufferDescriptor const desc(0, length, length);
-    Check(Osd::CpuEvaluator::EvalStencils(source, desc, target, desc, table.GetSizes().data(), table.GetOffsets().data(),
-                                          table.GetControlIndices().data(), table.GetWeights().data(), 0,
-                                          table.GetNumStencils()),
-          "OpenSubdiv's evaluator refuses");
+    Check(
+        Osd::CpuEvaluator::EvalStencils(source, desc, target, desc, table.GetSizes().data(),
+                                        table.GetOffsets().data(), table.GetControlIndices().data(),
+                                        table.GetWeights().data(), 0, table.GetNumStencils()),
+        "OpenSubdiv's evaluator refuses");
 }
 
 }  // namespace limn::bench

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/bake.h"
 
 #include <algorithm>
@@ -15,10 +16,10 @@
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
-#include "engine/bake/strip_baker.h"
-#include "engine/bake/strip_packer.h"
 #include "engine/bake/layout.h"
 #include "engine/bake/preview.h"
+#include "engine/bake/strip_baker.h"
+#include "engine/bake/strip_packer.h"
 #include "far_ext/error.h"
 
 namespace limn::engine {
@@ -27,13 +28,16 @@ namespace {
 
 std::string NameSome(std::vector<Index> const& faces, Scene const& scene) {
     std::string text;
-    for (size_t i = 0; i < std::min<size_t>(3, faces.size()); ++i) text += (i ? ", " : "") + scene.NameFace(faces[i]);
+    for (size_t i = 0; i < std::min<size_t>(3, faces.size()); ++i)
+        text += (i ? ", " : "") + scene.NameFace(faces[i]);
     if (faces.size() > 3) text += fmt::format(" and {} more", faces.size() - 3);
     return text;
 }
 
-/// The tiles that the bounds of some baked face meet. Bounds are generous: a tile may turn out empty.
-std::vector<int> FindTiles(BandBaker& baker, Scene const& scene, BakeOptions const& options, Job& job) {
+/// The tiles that the bounds of some baked face meet. Bounds are generous: a tile may turn out
+/// empty.
+std::vector<int> FindTiles(BandBaker& baker, Scene const& scene, BakeOptions const& options,
+                           Job& job) {
     std::set<int> tiles;
     std::vector<Index> outOfRange, elsewhere;
     for (Index face = 0; face < baker.GetNumFaces(); ++face) {
@@ -41,27 +45,35 @@ std::vector<int> FindTiles(BandBaker& baker, Scene const& scene, BakeOptions con
         UVBounds const& b = baker.GetBounds(face);
         if (baker.LeavesUdimRange(face)) outOfRange.push_back(face);
         if (b.minU > 0.9999f || b.minV > 0.9999f) elsewhere.push_back(face);
-        auto const low = [](float x, float most) { return static_cast<int>(std::floor(std::clamp(x, 0.0f, most))); };
+        auto const low = [](float x, float most) {
+            return static_cast<int>(std::floor(std::clamp(x, 0.0f, most)));
+        };
         for (int v = low(b.minV, 899.0f); v <= low(b.maxV, 899.0f); ++v) {
-            for (int u = low(b.minU, 9.0f); u <= low(b.maxU, 9.0f); ++u) tiles.insert(1001 + u + 10 * v);
+            for (int u = low(b.minU, 9.0f); u <= low(b.maxU, 9.0f); ++u)
+                tiles.insert(1001 + u + 10 * v);
         }
     }
     if (!outOfRange.empty()) {
-        job.Warn(fmt::format("{}: the texture coordinates of {} leave the UDIM range (u 0 to 10, v from 0); what lies "
-                             "outside is not baked",
-                             scene.path, NameSome(outOfRange, scene)));
+        job.Warn(
+            fmt::format("{}: the texture coordinates of {} leave the UDIM range (u 0 to 10, v from "
+                        "0); what lies "
+                        "outside is not baked",
+                        scene.path, NameSome(outOfRange, scene)));
     }
     if (!HasUdimToken(options.pattern)) {
         tiles = {1001};
         if (!elsewhere.empty()) {
-            job.Warn(fmt::format("{}: {} lie in other tiles than 1001; put <UDIM> into the output's name to bake them",
-                                 scene.path, NameSome(elsewhere, scene)));
+            job.Warn(
+                fmt::format("{}: {} lie in other tiles than 1001; put <UDIM> into the output's "
+                            "name to bake them",
+                            scene.path, NameSome(elsewhere, scene)));
         }
     }
     std::vector<int> wanted;
     for (int tile : tiles) {
-        bool const isWanted = options.tiles.empty() ||
-                              std::find(options.tiles.begin(), options.tiles.end(), tile) != options.tiles.end();
+        bool const isWanted =
+            options.tiles.empty() ||
+            std::find(options.tiles.begin(), options.tiles.end(), tile) != options.tiles.end();
         if (isWanted) wanted.push_back(tile);
     }
     return wanted;
@@ -77,14 +89,17 @@ public:
           _numPlanes(file.numPlanes),
           _buffers(static_cast<size_t>(spec.GetNumLevels())),
           _chain(spec.width, spec.height, spec.GetNumLevels(), file.numPlanes, file.groups,
-                 [this](int level, int row, TexelRowView const& texels) { AddRow(level, row, texels); }) {}
+                 [this](int level, int row, TexelRowView const& texels) {
+                     AddRow(level, row, texels);
+                 }) {}
 
     void Add(std::span<TexelRowView const> rows) { _chain.Add(rows); }
     size_t GetNumClamped() const { return _numClamped; }
 
 private:
     void AddRow(int level, int row, TexelRowView const& texels) {
-        int const T = ExrSpec::kTileSize, width = _spec.GetLevelWidth(level), height = _spec.GetLevelHeight(level);
+        int const T = ExrSpec::kTileSize, width = _spec.GetLevelWidth(level),
+                  height = _spec.GetLevelHeight(level);
         size_t const w = static_cast<size_t>(width), planeSize = w * T;
         auto& buffer = _buffers[level];
         int const numChannels = _numPlanes + (_hasCoverage ? 1 : 0);
@@ -98,7 +113,8 @@ private:
         std::vector<ExrTile> tiles(static_cast<size_t>((width + T - 1) / T));
         tbb::parallel_for(size_t{0}, tiles.size(), [&](size_t tile) {
             std::vector<float const*> channels;
-            for (int c = 0; c < numChannels; ++c) channels.push_back(&buffer[c * planeSize + tile * T]);
+            for (int c = 0; c < numChannels; ++c)
+                channels.push_back(&buffer[c * planeSize + tile * T]);
             tiles[tile] = _writer.Pack(level, static_cast<int>(tile), row / T, channels.data(), w);
         });
         for (ExrTile const& tile : tiles) {
@@ -138,8 +154,8 @@ std::string PreviewPath(std::string const& path, FileLayout const& layout, size_
 
 class TileJob {
 public:
-    TileJob(int tile, BandBaker& baker, std::vector<FileLayout> const& layouts, Scene const& scene, Scene const* other,
-            BakeOptions const& options, Job& job)
+    TileJob(int tile, BandBaker& baker, std::vector<FileLayout> const& layouts, Scene const& scene,
+            Scene const* other, BakeOptions const& options, Job& job)
         : _tile(tile),
           _baker(baker),
           _layouts(layouts),
@@ -157,13 +173,15 @@ public:
             output.width = options.width;
             output.height = options.height;
             auto const attributes = MakeAttributes(options, layouts[f], scene, other);
-            output.wasSkipped = options.skipExisting && IsUpToDate(output.path, attributes) && HasPreviews(f);
+            output.wasSkipped =
+                options.skipExisting && IsUpToDate(output.path, attributes) && HasPreviews(f);
             if (!output.wasSkipped) Open(f, attributes);
         }
     }
 
     bool HasWork() const {
-        return std::any_of(_writers.begin(), _writers.end(), [](auto const& writer) { return writer != nullptr; });
+        return std::any_of(_writers.begin(), _writers.end(),
+                           [](auto const& writer) { return writer != nullptr; });
     }
 
     void Run();
@@ -173,7 +191,8 @@ public:
 private:
     bool HasPreviews(size_t f) const {
         for (size_t map = 0; _options.hasPreview && map < _layouts[f].maps.size(); ++map) {
-            if (!std::filesystem::exists(PreviewPath(_files[f].output.path, _layouts[f], map))) return false;
+            if (!std::filesystem::exists(PreviewPath(_files[f].output.path, _layouts[f], map)))
+                return false;
         }
         return true;
     }
@@ -190,11 +209,13 @@ private:
         OpenFile& file = _files[f];
         _writers[f] = std::make_unique<ExrWriter>(file.output.path, spec);
         if (_options.hasMips) {
-            file.mips = std::make_unique<MipWriter>(*_writers[f], spec, _layouts[f], _options.hasCoverage);
+            file.mips =
+                std::make_unique<MipWriter>(*_writers[f], spec, _layouts[f], _options.hasCoverage);
         }
         if (!_options.hasPreview) return;
         for (size_t m = 0; m < _layouts[f].maps.size(); ++m) {
-            file.previews.emplace_back(_layouts[f].maps[m], _layouts[f].groups[m].first, spec.width, spec.height);
+            file.previews.emplace_back(_layouts[f].maps[m], _layouts[f].groups[m].first, spec.width,
+                                       spec.height);
         }
     }
 
@@ -224,13 +245,17 @@ std::vector<TileJob::Blocks> TileJob::BinFaces(TileGrid const& grid) const {
         double const slack = 1.0;
         double const left = grid.ToX(b.minU) - slack, right = grid.ToX(b.maxU) + slack;
         double const top = grid.ToY(b.maxV) - slack, bottom = grid.ToY(b.minV) + slack;
-        if (!(right >= 0.0 && left <= grid.width - 1.0 && bottom >= 0.0 && top <= grid.height - 1.0)) continue;
+        if (!(right >= 0.0 && left <= grid.width - 1.0 && bottom >= 0.0 &&
+              top <= grid.height - 1.0))
+            continue;
         int const firstBlock = static_cast<int>(std::max(left, 0.0)) / Band::kBlockColumns;
-        int const lastBlock = static_cast<int>(std::min(right, grid.width - 1.0)) / Band::kBlockColumns;
+        int const lastBlock =
+            static_cast<int>(std::min(right, grid.width - 1.0)) / Band::kBlockColumns;
         int const firstBand = static_cast<int>(std::max(top, 0.0)) / Band::kRows;
         int const lastBand = static_cast<int>(std::min(bottom, grid.height - 1.0)) / Band::kRows;
         for (int band = firstBand; band <= lastBand; ++band) {
-            for (int block = firstBlock; block <= lastBlock; ++block) bins[band][block].push_back(face);
+            for (int block = firstBlock; block <= lastBlock; ++block)
+                bins[band][block].push_back(face);
         }
     }
     return bins;
@@ -254,8 +279,8 @@ void TileJob::Run() {
     };
     Window recent;
     int next = 0, nextOut = 0;
-    // The last filter keeps what it catches until the pipeline has run dry: TBB drops, and never frees, the
-    // bands that wait before a serial filter when a filter throws.
+    // The last filter keeps what it catches until the pipeline has run dry: TBB drops, and never
+    // frees, the bands that wait before a serial filter when a filter throws.
     std::exception_ptr failure;
     std::atomic<bool> hasFailed{false};
     size_t const numTokens = static_cast<size_t>(tbb::this_task_arena::max_concurrency()) + 2;
@@ -267,12 +292,12 @@ void TileJob::Run() {
                                         if (next == numBands + halo || hasFailed) control.stop();
                                         return next++;
                                     }) &
-            tbb::make_filter<int, std::shared_ptr<Band>>(
-                tbb::filter_mode::parallel,
-                [&](int band) -> std::shared_ptr<Band> {
-                    if (band >= numBands) return nullptr;
-                    return _baker.MakeBand(band, grid, bins[band]);
-                }) &
+            tbb::make_filter<int, std::shared_ptr<Band>>(tbb::filter_mode::parallel,
+                                                         [&](int band) -> std::shared_ptr<Band> {
+                                                             if (band >= numBands) return nullptr;
+                                                             return _baker.MakeBand(band, grid,
+                                                                                    bins[band]);
+                                                         }) &
             tbb::make_filter<std::shared_ptr<Band>, Work>(
                 tbb::filter_mode::serial_in_order,
                 [&](std::shared_ptr<Band> band) {
@@ -290,8 +315,9 @@ void TileJob::Run() {
                 tbb::filter_mode::parallel,
                 [&](Work work) -> std::shared_ptr<PackedBand> {
                     if (work.window.empty()) return nullptr;
-                    return std::make_shared<PackedBand>(PackBand(work.window, work.at, _options.padding,
-                                                                 _layouts, _writers, _options.hasCoverage, needsRows));
+                    return std::make_shared<PackedBand>(
+                        PackBand(work.window, work.at, _options.padding, _layouts, _writers,
+                                 _options.hasCoverage, needsRows));
                 }) &
             tbb::make_filter<std::shared_ptr<PackedBand>, void>(
                 tbb::filter_mode::serial_in_order, [&](std::shared_ptr<PackedBand> const& band) {
@@ -319,7 +345,8 @@ void TileJob::Write(PackedBand const& band) {
         }
         if (file.mips) file.mips->Add(packed.rows);
         for (size_t row = 0; row < packed.rows.size(); ++row) {
-            for (PreviewBuilder& preview : file.previews) preview.Add(band.index * Band::kRows + static_cast<int>(row), packed.rows[row]);
+            for (PreviewBuilder& preview : file.previews)
+                preview.Add(band.index * Band::kRows + static_cast<int>(row), packed.rows[row]);
         }
         file.output.min = std::min(file.output.min, packed.min);
         file.output.max = std::max(file.output.max, packed.max);
@@ -334,7 +361,8 @@ void TileJob::Finish(BakeReport& report) {
             if (!_isAnyCovered) continue;
             _writers[f]->Commit();
             for (size_t map = 0; map < file.previews.size(); ++map) {
-                WritePng(PreviewPath(file.output.path, *file.layout, map), file.previews[map].Draw());
+                WritePng(PreviewPath(file.output.path, *file.layout, map),
+                         file.previews[map].Draw());
             }
             report.clamped += file.numClamped + (file.mips ? file.mips->GetNumClamped() : 0);
         }
@@ -347,7 +375,8 @@ void TileJob::Finish(BakeReport& report) {
 
 }  // namespace
 
-BakeReport Bake(Scene const& scene, Far::TopologyRefiner const& refiner, Scene const* other, BakeOptions const& options, Job& job) {
+BakeReport Bake(Scene const& scene, Far::TopologyRefiner const& refiner, Scene const* other,
+                BakeOptions const& options, Job& job) {
     std::vector<Map> const maps = MakeMaps(options.maps, scene);
     std::vector<FileLayout> const layouts = LayOutFiles(maps, options.pattern, options.hasCoverage);
     BandBaker baker(scene, refiner, other, options, maps);
@@ -366,24 +395,30 @@ BakeReport Bake(Scene const& scene, Far::TopologyRefiner const& refiner, Scene c
     std::vector<std::string> movedPlaces;
     baker.AddCounts(report, movedPlaces);
     if (report.outputs.empty()) {
-        throw Error(ErrorCode::BadMesh, fmt::format("{}: no texel is covered in the tiles asked for; see limn info for "
-                                                    "where the texture coordinates lie",
-                                                    scene.path));
+        throw Error(ErrorCode::BadMesh,
+                    fmt::format("{}: no texel is covered in the tiles asked for; see limn info for "
+                                "where the texture coordinates lie",
+                                scene.path));
     }
     if (!movedPlaces.empty()) {
         movedPlaces.resize(std::min<size_t>(movedPlaces.size(), 8));
-        job.Warn(fmt::format("{}: {} samples lie within 2^-16 of an extraordinary vertex, where curvature is taken at "
-                             "that distance: {}",
-                             scene.path, report.movedSamples, fmt::join(movedPlaces, ", ")));
+        job.Warn(
+            fmt::format("{}: {} samples lie within 2^-16 of an extraordinary vertex, where "
+                        "curvature is taken at "
+                        "that distance: {}",
+                        scene.path, report.movedSamples, fmt::join(movedPlaces, ", ")));
     }
     if (report.newtonFailures) {
-        job.Warn(fmt::format("{}: the texture map could not be inverted at {} texels, which stay empty", scene.path,
-                             report.newtonFailures));
+        job.Warn(
+            fmt::format("{}: the texture map could not be inverted at {} texels, which stay empty",
+                        scene.path, report.newtonFailures));
     }
     if (report.clamped) {
-        job.Warn(fmt::format("{}: {} values were beyond the range of half and were clamped; bake without --half to keep "
-                             "them",
-                             scene.path, report.clamped));
+        job.Warn(
+            fmt::format("{}: {} values were beyond the range of half and were clamped; bake "
+                        "without --half to keep "
+                        "them",
+                        scene.path, report.clamped));
     }
     return report;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/dilate.h"
 
 #include <algorithm>
@@ -11,16 +12,22 @@ namespace {
 
 constexpr int kFastRadius = 64;  // what FindNearest takes
 
-constexpr int32_t PackOffset(int dx, int dy) { return dy * 65536 + dx; }
+constexpr int32_t PackOffset(int dx, int dy) {
+    return dy * 65536 + dx;
+}
 
 }  // namespace
 
 PaddingSearch::PaddingSearch(CoverageRows const& coverage, int radius)
-    : _coverage(coverage), _radius(radius), _isFast(radius <= kFastRadius), _far(_isFast ? kFarRow : radius + 1) {}
+    : _coverage(coverage),
+      _radius(radius),
+      _isFast(radius <= kFastRadius),
+      _far(_isFast ? kFarRow : radius + 1) {}
 
 bool PaddingSearch::IsNear(Window const& window) const {
     for (int row = 0; row < window.numRows; ++row) {
-        uint8_t const* const covered = _coverage.rows[window.firstRow + row - _coverage.firstRow] + window.firstColumn;
+        uint8_t const* const covered =
+            _coverage.rows[window.firstRow + row - _coverage.firstRow] + window.firstColumn;
         if (std::memchr(covered, 1, static_cast<size_t>(window.numColumns))) return true;
     }
     return false;
@@ -30,7 +37,8 @@ bool PaddingSearch::Find(int firstRow, int numRows, int firstColumn, int numColu
     Window const inner{firstRow, numRows, firstColumn, numColumns};
     bool isAllCovered = true;
     for (int row = 0; row < numRows && isAllCovered; ++row) {
-        uint8_t const* const covered = _coverage.rows[firstRow + row - _coverage.firstRow] + firstColumn;
+        uint8_t const* const covered =
+            _coverage.rows[firstRow + row - _coverage.firstRow] + firstColumn;
         isAllCovered = !std::memchr(covered, 0, static_cast<size_t>(numColumns));
     }
     if (isAllCovered) return false;
@@ -39,7 +47,8 @@ bool PaddingSearch::Find(int firstRow, int numRows, int firstColumn, int numColu
     outer.firstRow = std::max(firstRow - _radius, _coverage.firstRow);
     outer.numRows = std::min(firstRow + numRows + _radius, lastRow) - outer.firstRow;
     outer.firstColumn = std::max(firstColumn - _radius, 0);
-    outer.numColumns = std::min(firstColumn + numColumns + _radius, _coverage.width) - outer.firstColumn;
+    outer.numColumns =
+        std::min(firstColumn + numColumns + _radius, _coverage.width) - outer.firstColumn;
     if (!IsNear(outer)) return false;
 
     FindInColumns(inner, outer);
@@ -53,10 +62,11 @@ bool PaddingSearch::Find(int firstRow, int numRows, int firstColumn, int numColu
     return true;
 }
 
-/// For each texel of the inner rows and the outer columns the nearest covered texel of its column within the
-/// radius, as dy (ties: up), or _far. One sweep down and one sweep up.
+/// For each texel of the inner rows and the outer columns the nearest covered texel of its column
+/// within the radius, as dy (ties: up), or _far. One sweep down and one sweep up.
 void PaddingSearch::FindInColumns(Window const& inner, Window const& outer) {
-    size_t const stride = static_cast<size_t>(inner.numColumns + 2 * _radius), width = static_cast<size_t>(outer.numColumns);
+    size_t const stride = static_cast<size_t>(inner.numColumns + 2 * _radius),
+                 width = static_cast<size_t>(outer.numColumns);
     size_t const shift = static_cast<size_t>(outer.firstColumn - (inner.firstColumn - _radius));
     _columns.assign(stride * static_cast<size_t>(inner.numRows), _far);
     auto const none = static_cast<int16_t>(_radius + 1);
@@ -71,7 +81,8 @@ void PaddingSearch::FindInColumns(Window const& inner, Window const& outer) {
     };
     auto const findLine = [&](int row) -> int32_t* {
         bool const isWanted = row >= inner.firstRow && row < inner.firstRow + inner.numRows;
-        return isWanted ? &_columns[static_cast<size_t>(row - inner.firstRow) * stride + shift] : nullptr;
+        return isWanted ? &_columns[static_cast<size_t>(row - inner.firstRow) * stride + shift]
+                        : nullptr;
     };
     int const end = outer.firstRow + outer.numRows;
     for (int row = outer.firstRow; row < end; ++row) {  // downwards: what lies above
@@ -81,7 +92,8 @@ void PaddingSearch::FindInColumns(Window const& inner, Window const& outer) {
         }
     }
     _distance.assign(width, none);
-    for (int row = end - 1; row >= outer.firstRow; --row) {  // upwards: what lies below, if it is nearer
+    for (int row = end - 1; row >= outer.firstRow;
+         --row) {  // upwards: what lies below, if it is nearer
         step(row);
         if (int32_t* const out = findLine(row)) {
             for (size_t x = 0; x < width; ++x) {

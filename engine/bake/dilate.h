@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -11,25 +12,30 @@ struct CoverageRows {
     std::vector<uint8_t const*> rows;  ///< one byte per texel, 0 where uncovered, 1 where covered
 };
 
-/// For each uncovered texel of a rectangle the nearest covered texel within a radius (Euclidean; ties:
-/// smaller y, then smaller x).
+/// For each uncovered texel of a rectangle the nearest covered texel within a radius (Euclidean;
+/// ties: smaller y, then smaller x).
 ///
 /// Threads  one per thread
 class PaddingSearch {
 public:
-    /// \param coverage  kept by reference; at least `radius` rows beyond what is asked for, where the tile has them
+    /// \param coverage  kept by reference; at least `radius` rows beyond what is asked for, where
+    ///                  the tile has them
     PaddingSearch(CoverageRows const& coverage, int radius);
 
     /// \return false if nothing is to be padded: all are covered, or no covered texel is near
     bool Find(int firstRow, int numRows, int firstColumn, int numColumns);
 
-    /// Offsets (dy * 65536 + dx, see GetOffsetX) of the rectangle last searched, row after row; 0 where
-    /// covered, kNoSource where nothing is near.
+    /// Offsets (dy * 65536 + dx, see GetOffsetX) of the rectangle last searched, row after row; 0
+    /// where covered, kNoSource where nothing is near.
     std::vector<int32_t> const& GetOffsets() const { return _offsets; }
 
     static constexpr int32_t kNoSource = INT32_MIN;
-    static constexpr int GetOffsetX(int32_t packed) { return static_cast<int16_t>(packed & 0xffff); }
-    static constexpr int GetOffsetY(int32_t packed) { return (packed - GetOffsetX(packed)) / 65536; }
+    static constexpr int GetOffsetX(int32_t packed) {
+        return static_cast<int16_t>(packed & 0xffff);
+    }
+    static constexpr int GetOffsetY(int32_t packed) {
+        return (packed - GetOffsetX(packed)) / 65536;
+    }
 
 private:
     struct Window {
@@ -43,9 +49,10 @@ private:
     CoverageRows const& _coverage;
     int _radius;
     bool _isFast;
-    int32_t _far;                   // what stands for no covered texel in a column
-    std::vector<int16_t> _distance; // per column of the window
-    std::vector<int32_t> _columns;  // per texel of the rectangle and `radius` columns beside it: dy in its column
+    int32_t _far;                    // what stands for no covered texel in a column
+    std::vector<int16_t> _distance;  // per column of the window
+    std::vector<int32_t>
+        _columns;  // per texel of the rectangle and `radius` columns beside it: dy in its column
     std::vector<int32_t> _best, _offsets;
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/layout.h"
 
 #include <algorithm>
@@ -13,7 +14,8 @@ namespace limn::engine {
 namespace {
 
 void ReplaceAll(std::string& text, std::string const& token, std::string const& value) {
-    for (size_t at = text.find(token); at != std::string::npos; at = text.find(token, at + value.size())) {
+    for (size_t at = text.find(token); at != std::string::npos;
+         at = text.find(token, at + value.size())) {
         text.replace(at, token.size(), value);
     }
 }
@@ -27,10 +29,12 @@ std::string AsFileName(std::string name) {
 }  // namespace
 
 bool HasUdimToken(std::string const& pattern) {
-    return pattern.find("<UDIM>") != std::string::npos || pattern.find("{udim}") != std::string::npos;
+    return pattern.find("<UDIM>") != std::string::npos ||
+           pattern.find("{udim}") != std::string::npos;
 }
 
-std::string ExpandPattern(std::string const& pattern, std::string const& map, std::string const& mesh, int tile) {
+std::string ExpandPattern(std::string const& pattern, std::string const& map,
+                          std::string const& mesh, int tile) {
     std::string path = pattern;
     ReplaceAll(path, "{map}", AsFileName(map));
     ReplaceAll(path, "{mesh}", mesh);
@@ -39,7 +43,8 @@ std::string ExpandPattern(std::string const& pattern, std::string const& map, st
     return path;
 }
 
-std::vector<FileLayout> LayOutFiles(std::vector<Map> const& maps, std::string const& pattern, bool hasCoverage) {
+std::vector<FileLayout> LayOutFiles(std::vector<Map> const& maps, std::string const& pattern,
+                                    bool hasCoverage) {
     bool const hasMapToken = pattern.find("{map}") != std::string::npos;
     std::vector<FileLayout> files;
     int numPlanes = 0;
@@ -57,7 +62,8 @@ std::vector<FileLayout> LayOutFiles(std::vector<Map> const& maps, std::string co
     for (FileLayout& file : files) {
         for (Map const& map : file.maps) {
             std::string const layer = file.maps.size() > 1 ? AsFileName(map.name) + "." : "";
-            for (std::string const& channel : map.channels) file.channelNames.push_back(layer + channel);
+            for (std::string const& channel : map.channels)
+                file.channelNames.push_back(layer + channel);
             file.mapName += (file.mapName.empty() ? "" : "+") + map.name;
         }
         if (hasCoverage) file.channelNames.push_back("coverage");
@@ -66,10 +72,10 @@ std::vector<FileLayout> LayOutFiles(std::vector<Map> const& maps, std::string co
 }
 
 std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, Scene const& scene) {
-    std::string text = fmt::format("size={}x{} samples={} padding={} type={} compression={} mip={} coverage={}",
-                                   options.width, options.height, options.samplesPerSide, options.padding,
-                                   options.isHalf ? "half" : "float", GetName(options.compression),
-                                   options.hasMips, options.hasCoverage);
+    std::string text = fmt::format(
+        "size={}x{} samples={} padding={} type={} compression={} mip={} coverage={}", options.width,
+        options.height, options.samplesPerSide, options.padding, options.isHalf ? "half" : "float",
+        GetName(options.compression), options.hasMips, options.hasCoverage);
     text += fmt::format(" {} orientation={}", DescribeSubdivision(scene.cage),
                         options.isLeftHanded ? "left" : "right");
     if (!options.groups.empty()) {
@@ -80,16 +86,19 @@ std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, S
         text += fmt::format(" encode={},{}", options.maps.encodeScale, options.maps.encodeOffset);
     }
     auto const has = [&](MapKind kind) {
-        return std::any_of(file.maps.begin(), file.maps.end(), [&](Map const& map) { return map.kind == kind; });
+        return std::any_of(file.maps.begin(), file.maps.end(),
+                           [&](Map const& map) { return map.kind == kind; });
     };
     if (has(MapKind::Bands)) text += fmt::format(" bands={}", options.maps.numBands);
     if (has(MapKind::Noise)) {
-        text += fmt::format(" octaves={} frequency={} gain={} seed={} normalize={} ramp={}", options.noise.octaves,
-                            options.noise.frequency, options.noise.gain, options.noise.seed, options.maps.isNormalized,
+        text += fmt::format(" octaves={} frequency={} gain={} seed={} normalize={} ramp={}",
+                            options.noise.octaves, options.noise.frequency, options.noise.gain,
+                            options.noise.seed, options.maps.isNormalized,
                             options.maps.ramp ? options.maps.ramp->GetText() : "none");
     }
     if (has(MapKind::Field)) {
-        text += fmt::format(" field={} flow={} normalize={}", options.fieldHash, options.maps.space == MapSpace::UV ? "uv" : "object",
+        text += fmt::format(" field={} flow={} normalize={}", options.fieldHash,
+                            options.maps.space == MapSpace::UV ? "uv" : "object",
                             options.maps.isNormalized);
     }
     if (has(MapKind::Displacement) || has(MapKind::Bands)) {
@@ -99,14 +108,18 @@ std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, S
     return text;
 }
 
-std::vector<std::pair<std::string, std::string>> MakeAttributes(BakeOptions const& options, FileLayout const& file,
-                                                                Scene const& scene, Scene const* other) {
+std::vector<std::pair<std::string, std::string>> MakeAttributes(BakeOptions const& options,
+                                                                FileLayout const& file,
+                                                                Scene const& scene,
+                                                                Scene const* other) {
     std::string units;
     for (Map const& map : file.maps) {
-        units += (units.empty() ? "" : "; ") + (file.maps.size() > 1 ? map.name + " " : "") + map.units;
+        units +=
+            (units.empty() ? "" : "; ") + (file.maps.size() > 1 ? map.name + " " : "") + map.units;
     }
     std::vector<std::pair<std::string, std::string>> attributes{
-        {"limn:convention", "sphere of radius r, seen from outside: k1 = k2 = +1/r; object space; v up"},
+        {"limn:convention",
+         "sphere of radius r, seen from outside: k1 = k2 = +1/r; object space; v up"},
         {"limn:input", scene.sha256},
         {"limn:map", file.mapName},
         {"limn:options", MakeOptionText(options, file, scene)},
@@ -124,7 +137,8 @@ std::vector<std::pair<std::string, std::string>> MakeAttributes(BakeOptions cons
     return attributes;
 }
 
-bool IsUpToDate(std::string const& path, std::vector<std::pair<std::string, std::string>> const& attributes) {
+bool IsUpToDate(std::string const& path,
+                std::vector<std::pair<std::string, std::string>> const& attributes) {
     auto existing = ReadExrAttributes(path, "limn:");
     std::vector<std::pair<std::string, std::string>> wanted;
     for (auto const& attribute : attributes) {

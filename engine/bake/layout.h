@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
@@ -19,17 +20,21 @@ struct FileLayout {
 };
 
 /// One file per map where the pattern has {map}, else one file with a layer per map.
-std::vector<FileLayout> LayOutFiles(std::vector<Map> const& maps, std::string const& pattern, bool hasCoverage);
+std::vector<FileLayout> LayOutFiles(std::vector<Map> const& maps, std::string const& pattern,
+                                    bool hasCoverage);
 
 /// The options that decide pixels, in canonical form: what makes two runs' files equal.
 std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, Scene const& scene);
 
 /// Header attributes of a file (bake.md, "Files").
-std::vector<std::pair<std::string, std::string>> MakeAttributes(BakeOptions const& options, FileLayout const& file,
-                                                                Scene const& scene, Scene const* other);
+std::vector<std::pair<std::string, std::string>> MakeAttributes(BakeOptions const& options,
+                                                                FileLayout const& file,
+                                                                Scene const& scene,
+                                                                Scene const* other);
 
 /// True if `path` is a file this bake would write again with the same content.
-bool IsUpToDate(std::string const& path, std::vector<std::pair<std::string, std::string>> const& attributes);
+bool IsUpToDate(std::string const& path,
+                std::vector<std::pair<std::string, std::string>> const& attributes);
 
 bool HasUdimToken(std::string const& pattern);
 

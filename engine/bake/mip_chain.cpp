@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/mip_chain.h"
 
 #include <algorithm>
@@ -13,17 +14,21 @@ std::array<float, 3> FindMainLine(std::array<double, 6> const& m) {
         double const trace = a[0] + a[3] + a[5];
         if (!(trace > 0.0)) return {0.0f, 0.0f, 0.0f};
         for (double& x : a) x /= trace;
-        double const b[6] = {a[0] * a[0] + a[1] * a[1] + a[2] * a[2], a[0] * a[1] + a[1] * a[3] + a[2] * a[4],
-                             a[0] * a[2] + a[1] * a[4] + a[2] * a[5], a[1] * a[1] + a[3] * a[3] + a[4] * a[4],
-                             a[1] * a[2] + a[3] * a[4] + a[4] * a[5], a[2] * a[2] + a[4] * a[4] + a[5] * a[5]};
+        double const b[6] = {
+            a[0] * a[0] + a[1] * a[1] + a[2] * a[2], a[0] * a[1] + a[1] * a[3] + a[2] * a[4],
+            a[0] * a[2] + a[1] * a[4] + a[2] * a[5], a[1] * a[1] + a[3] * a[3] + a[4] * a[4],
+            a[1] * a[2] + a[3] * a[4] + a[4] * a[5], a[2] * a[2] + a[4] * a[4] + a[5] * a[5]};
         std::copy(b, b + 6, a);
     }
     double v[3] = {a[0], a[1], a[2]};
-    if (a[3] > a[0] && a[3] >= a[5]) v[0] = a[1], v[1] = a[3], v[2] = a[4];
-    else if (a[5] > a[0] && a[5] > a[3]) v[0] = a[2], v[1] = a[4], v[2] = a[5];
+    if (a[3] > a[0] && a[3] >= a[5])
+        v[0] = a[1], v[1] = a[3], v[2] = a[4];
+    else if (a[5] > a[0] && a[5] > a[3])
+        v[0] = a[2], v[1] = a[4], v[2] = a[5];
     double const length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     if (!(length > 0.0)) return {0.0f, 0.0f, 0.0f};
-    return {static_cast<float>(v[0] / length), static_cast<float>(v[1] / length), static_cast<float>(v[2] / length)};
+    return {static_cast<float>(v[0] / length), static_cast<float>(v[1] / length),
+            static_cast<float>(v[2] / length)};
 }
 
 /// Which finer texels a coarser one holds along one axis, and how much of each.
@@ -50,11 +55,12 @@ Box FindBox(int fine, int coarse, int at) {
 
 }  // namespace
 
-MipChain::MipChain(int width, int height, int numLevels, int numChannels, std::vector<ChannelGroup> groups,
-                   Emit emit)
+MipChain::MipChain(int width, int height, int numLevels, int numChannels,
+                   std::vector<ChannelGroup> groups, Emit emit)
     : _numChannels(numChannels), _groups(std::move(groups)), _emit(std::move(emit)) {
-    _hasLines = std::any_of(_groups.begin(), _groups.end(),
-                            [](ChannelGroup const& group) { return group.averaging == Averaging::Line; });
+    _hasLines = std::any_of(_groups.begin(), _groups.end(), [](ChannelGroup const& group) {
+        return group.averaging == Averaging::Line;
+    });
     for (int level = 0; level < numLevels; ++level) {
         Level l;
         l.width = std::max(1, width >> level);
@@ -66,7 +72,8 @@ MipChain::MipChain(int width, int height, int numLevels, int numChannels, std::v
 void MipChain::Add(std::span<TexelRowView const> rows) {
     for (TexelRowView const& row : rows) AddRow(0, row);
     // What a box may still ask for, once the rows given are gone.
-    for (int row = std::max(0, _levels[0].numRows - 2); row < _levels[0].numRows; ++row) Keep(_levels[0], row);
+    for (int row = std::max(0, _levels[0].numRows - 2); row < _levels[0].numRows; ++row)
+        Keep(_levels[0], row);
 }
 
 /// Copies a row of the window into memory of its own.
@@ -110,14 +117,17 @@ void MipChain::AverageTexel(std::span<float const> weights, std::span<float cons
             std::array<double, 6> sum{};
             for (size_t k = 0; k < weights.size(); ++k) {
                 double d[3];
-                for (int c = 0; c < 3; ++c) d[c] = values[k][static_cast<size_t>(group.first + c) * strides[k]];
+                for (int c = 0; c < 3; ++c)
+                    d[c] = values[k][static_cast<size_t>(group.first + c) * strides[k]];
                 int index = 0;
                 for (int a = 0; a < 3; ++a) {
-                    for (int b = a; b < 3; ++b) sum[index++] += static_cast<double>(weights[k]) * d[a] * d[b];
+                    for (int b = a; b < 3; ++b)
+                        sum[index++] += static_cast<double>(weights[k]) * d[a] * d[b];
                 }
             }
             auto const line = FindMainLine(sum);
-            for (int c = 0; c < 3; ++c) out[static_cast<size_t>(group.first + c) * outStride] = line[c];
+            for (int c = 0; c < 3; ++c)
+                out[static_cast<size_t>(group.first + c) * outStride] = line[c];
             continue;
         }
         float lengthSquared = 0.0f, total = 0.0f;
@@ -140,8 +150,10 @@ void MipChain::AverageTexel(std::span<float const> weights, std::span<float cons
     }
 }
 
-/// All boxes of 2 x 2 as if they were covered, which most are, or empty; the others are for ReduceBox.
-void MipChain::ReduceQuarters(TexelRowView const& top, TexelRowView const& bottom, TexelRow& result) const {
+/// All boxes of 2 x 2 as if they were covered, which most are, or empty; the others are for
+/// ReduceBox.
+void MipChain::ReduceQuarters(TexelRowView const& top, TexelRowView const& bottom,
+                              TexelRow& result) const {
     size_t const width = result.coverage.size();
     std::vector<float> squares;
     for (ChannelGroup const& group : _groups) {
@@ -151,8 +163,10 @@ void MipChain::ReduceQuarters(TexelRowView const& top, TexelRowView const& botto
             float const* const a = top.values + static_cast<size_t>(c) * top.stride;
             float const* const b = bottom.values + static_cast<size_t>(c) * bottom.stride;
             float* const out = &result.values[static_cast<size_t>(c) * width];
-            for (size_t x = 0; x < width; ++x) out[x] = 0.25f * ((a[2 * x] + a[2 * x + 1]) + (b[2 * x] + b[2 * x + 1]));
-            if (isUnit) for (size_t x = 0; x < width; ++x) squares[x] += out[x] * out[x];
+            for (size_t x = 0; x < width; ++x)
+                out[x] = 0.25f * ((a[2 * x] + a[2 * x + 1]) + (b[2 * x] + b[2 * x + 1]));
+            if (isUnit)
+                for (size_t x = 0; x < width; ++x) squares[x] += out[x] * out[x];
         }
         if (!isUnit) continue;
         for (float& square : squares) square = square > 0.0f ? 1.0f / std::sqrt(square) : 1.0f;
@@ -163,8 +177,10 @@ void MipChain::ReduceQuarters(TexelRowView const& top, TexelRowView const& botto
     }
 }
 
-/// Any box: the mean of what is covered in it, by area and coverage; where nothing is, of the padding.
-void MipChain::ReduceBox(Level const& from, Box const& rows, Box const& columns, int x, TexelRow& result) const {
+/// Any box: the mean of what is covered in it, by area and coverage; where nothing is, of the
+/// padding.
+void MipChain::ReduceBox(Level const& from, Box const& rows, Box const& columns, int x,
+                         TexelRow& result) const {
     float weights[9], covered = 0.0f;
     float const* values[9];
     size_t strides[9], count = 0;
@@ -175,7 +191,8 @@ void MipChain::ReduceBox(Level const& from, Box const& rows, Box const& columns,
             for (int i = 0; i < columns.count; ++i) {
                 int const column = columns.first + i;
                 float const area = rows.weights[j] * columns.weights[i];
-                float const weight = isPadding ? (fine.isFilled[column] ? area : 0.0f) : area * fine.coverage[column];
+                float const weight = isPadding ? (fine.isFilled[column] ? area : 0.0f)
+                                               : area * fine.coverage[column];
                 if (!(weight > 0.0f)) continue;
                 weights[count] = weight;
                 values[count] = fine.values + column;
@@ -187,8 +204,10 @@ void MipChain::ReduceBox(Level const& from, Box const& rows, Box const& columns,
     size_t const width = result.coverage.size();
     result.coverage[x] = covered;
     result.isFilled[x] = count > 0;
-    for (size_t c = 0; c < static_cast<size_t>(_numChannels); ++c) result.values[c * width + x] = 0.0f;
-    if (count > 0) AverageTexel({weights, count}, {values, count}, {strides, count}, &result.values[x], width);
+    for (size_t c = 0; c < static_cast<size_t>(_numChannels); ++c)
+        result.values[c * width + x] = 0.0f;
+    if (count > 0)
+        AverageTexel({weights, count}, {values, count}, {strides, count}, &result.values[x], width);
 }
 
 void MipChain::Reduce(Level const& from, int row, int width, int height, TexelRow& result) const {
@@ -197,15 +216,18 @@ void MipChain::Reduce(Level const& from, int row, int width, int height, TexelRo
     result.coverage.resize(w);
     result.isFilled.resize(w);
     Box const rows = FindBox(from.height, height, row);
-    bool const isQuarter = rows.count == 2 && from.width == 2 * width && !_hasLines;  // boxes of 2 x 2
-    TexelRowView const &top = from.window[rows.first % 3], &bottom = from.window[(rows.first + 1) % 3];
+    bool const isQuarter =
+        rows.count == 2 && from.width == 2 * width && !_hasLines;  // boxes of 2 x 2
+    TexelRowView const &top = from.window[rows.first % 3],
+                       &bottom = from.window[(rows.first + 1) % 3];
     if (isQuarter) ReduceQuarters(top, bottom, result);
     for (int x = 0; x < width; ++x) {
         int const at = 2 * x;
         if (isQuarter) {
             float const least = std::min(std::min(top.coverage[at], top.coverage[at + 1]),
                                          std::min(bottom.coverage[at], bottom.coverage[at + 1]));
-            int const anyFilled = top.isFilled[at] | top.isFilled[at + 1] | bottom.isFilled[at] | bottom.isFilled[at + 1];
+            int const anyFilled = top.isFilled[at] | top.isFilled[at + 1] | bottom.isFilled[at] |
+                                  bottom.isFilled[at + 1];
             result.coverage[x] = least;
             result.isFilled[x] = static_cast<uint8_t>(anyFilled);
             if (least == 1.0f || !anyFilled) continue;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -15,10 +16,10 @@ struct ChannelGroup {
     Averaging averaging = Averaging::Plain;
 };
 
-/// One row of texels of all channels, as it lies in somebody's memory: values, and how much of each texel
-/// is covered (0 for padding and for nothing) and whether it holds anything at all.
+/// One row of texels of all channels, as it lies in somebody's memory: values, and how much of each
+/// texel is covered (0 for padding and for nothing) and whether it holds anything at all.
 struct TexelRowView {
-    float const* values;      ///< channel c begins at c * stride
+    float const* values;  ///< channel c begins at c * stride
     size_t stride;
     float const* coverage;    ///< [width], in [0,1]
     uint8_t const* isFilled;  ///< [width]: covered or padded
@@ -26,11 +27,13 @@ struct TexelRowView {
 
 /// A row that has memory of its own.
 struct TexelRow {
-    std::vector<float> values;    ///< [channel][width]
+    std::vector<float> values;  ///< [channel][width]
     std::vector<float> coverage;
     std::vector<uint8_t> isFilled;
 
-    TexelRowView GetView() const { return {values.data(), coverage.size(), coverage.data(), isFilled.data()}; }
+    TexelRowView GetView() const {
+        return {values.data(), coverage.size(), coverage.data(), isFilled.data()};
+    }
 };
 
 /// Makes mip levels row by row, so that memory holds a few rows of each level and never an image.
@@ -43,7 +46,8 @@ public:
     /// \param emit  called for every finished row of a level >= 1, from fine to coarse
     using Emit = std::function<void(int level, int row, TexelRowView const& texels)>;
 
-    MipChain(int width, int height, int numLevels, int numChannels, std::vector<ChannelGroup> groups, Emit emit);
+    MipChain(int width, int height, int numLevels, int numChannels,
+             std::vector<ChannelGroup> groups, Emit emit);
 
     /// Rows of level 0, from the top, as many at a time as there are. They are not looked at later.
     void Add(std::span<TexelRowView const> rows);
@@ -51,16 +55,18 @@ public:
 private:
     struct Level {
         int width = 0, height = 0;
-        int numRows = 0;                      // rows received so far
-        std::array<TexelRowView, 3> window{}; // the last three of them, by row % 3
-        std::array<TexelRow, 3> kept;         // their memory, where it is ours
+        int numRows = 0;                       // rows received so far
+        std::array<TexelRowView, 3> window{};  // the last three of them, by row % 3
+        std::array<TexelRow, 3> kept;          // their memory, where it is ours
     };
 
     void AddRow(int level, TexelRowView const& row);
     void Keep(Level& level, int row);
     void Reduce(Level const& from, int row, int width, int height, TexelRow& result) const;
-    void ReduceQuarters(TexelRowView const& top, TexelRowView const& bottom, TexelRow& result) const;
-    void ReduceBox(Level const& from, struct Box const& rows, struct Box const& columns, int x, TexelRow& result) const;
+    void ReduceQuarters(TexelRowView const& top, TexelRowView const& bottom,
+                        TexelRow& result) const;
+    void ReduceBox(Level const& from, struct Box const& rows, struct Box const& columns, int x,
+                   TexelRow& result) const;
     void AverageTexel(std::span<float const> weights, std::span<float const* const> values,
                       std::span<size_t const> strides, float* out, size_t outStride) const;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/preview.h"
 
 #include <algorithm>
@@ -6,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "engine/images/line_convolution.h"
 #include "engine/images/images_module.h"
+#include "engine/images/line_convolution.h"
 #include "engine/io/file.h"
 #include "far_ext/error.h"
 
@@ -27,20 +28,25 @@ Colour Ramp(std::array<Colour, N> const& stops, float t) {
     size_t const low = std::min(static_cast<size_t>(at), N - 2);
     float const f = at - static_cast<float>(low);
     Colour colour;
-    for (size_t c = 0; c < 3; ++c) colour[c] = stops[low][c] + f * (stops[low + 1][c] - stops[low][c]);
+    for (size_t c = 0; c < 3; ++c)
+        colour[c] = stops[low][c] + f * (stops[low + 1][c] - stops[low][c]);
     return colour;
 }
 
 Colour Diverging(float t) {
-    static constexpr std::array<Colour, 5> kStops{{{0.02f, 0.19f, 0.45f}, {0.26f, 0.58f, 0.77f},
-                                                   {0.97f, 0.97f, 0.97f}, {0.90f, 0.45f, 0.32f},
+    static constexpr std::array<Colour, 5> kStops{{{0.02f, 0.19f, 0.45f},
+                                                   {0.26f, 0.58f, 0.77f},
+                                                   {0.97f, 0.97f, 0.97f},
+                                                   {0.90f, 0.45f, 0.32f},
                                                    {0.45f, 0.02f, 0.10f}}};
     return Ramp(kStops, 0.5f + 0.5f * t);
 }
 
 Colour Sequential(float t) {
-    static constexpr std::array<Colour, 5> kStops{{{0.27f, 0.00f, 0.33f}, {0.23f, 0.32f, 0.55f},
-                                                   {0.13f, 0.57f, 0.55f}, {0.37f, 0.79f, 0.38f},
+    static constexpr std::array<Colour, 5> kStops{{{0.27f, 0.00f, 0.33f},
+                                                   {0.23f, 0.32f, 0.55f},
+                                                   {0.13f, 0.57f, 0.55f},
+                                                   {0.37f, 0.79f, 0.38f},
                                                    {0.99f, 0.91f, 0.14f}}};
     return Ramp(kStops, t);
 }
@@ -50,12 +56,13 @@ struct Glyph {
     char character;
     std::array<uint8_t, 7> rows;
 };
-constexpr Glyph kFont[] = {
-    {'0', {14, 17, 19, 21, 25, 17, 14}}, {'1', {4, 12, 4, 4, 4, 4, 14}},     {'2', {14, 17, 1, 2, 4, 8, 31}},
-    {'3', {31, 2, 4, 2, 1, 17, 14}},     {'4', {2, 6, 10, 18, 31, 2, 2}},    {'5', {31, 16, 30, 1, 1, 17, 14}},
-    {'6', {6, 8, 16, 30, 17, 17, 14}},   {'7', {31, 1, 2, 4, 8, 8, 8}},      {'8', {14, 17, 17, 14, 17, 17, 14}},
-    {'9', {14, 17, 17, 15, 1, 2, 12}},   {'-', {0, 0, 0, 31, 0, 0, 0}},      {'+', {0, 4, 4, 31, 4, 4, 0}},
-    {'.', {0, 0, 0, 0, 0, 12, 12}},      {'e', {0, 0, 14, 17, 31, 16, 14}}};
+constexpr Glyph kFont[] = {{'0', {14, 17, 19, 21, 25, 17, 14}}, {'1', {4, 12, 4, 4, 4, 4, 14}},
+                           {'2', {14, 17, 1, 2, 4, 8, 31}},     {'3', {31, 2, 4, 2, 1, 17, 14}},
+                           {'4', {2, 6, 10, 18, 31, 2, 2}},     {'5', {31, 16, 30, 1, 1, 17, 14}},
+                           {'6', {6, 8, 16, 30, 17, 17, 14}},   {'7', {31, 1, 2, 4, 8, 8, 8}},
+                           {'8', {14, 17, 17, 14, 17, 17, 14}}, {'9', {14, 17, 17, 15, 1, 2, 12}},
+                           {'-', {0, 0, 0, 31, 0, 0, 0}},       {'+', {0, 4, 4, 31, 4, 4, 0}},
+                           {'.', {0, 0, 0, 0, 0, 12, 12}},      {'e', {0, 0, 14, 17, 31, 16, 14}}};
 
 class Canvas {
 public:
@@ -77,7 +84,8 @@ public:
                 if (glyph.character != character) continue;
                 for (int row = 0; row < 14; ++row) {
                     for (int column = 0; column < 10; ++column) {
-                        if (glyph.rows[row / 2] >> (4 - column / 2) & 1) Set(x + column, y + row, {1, 1, 1});
+                        if (glyph.rows[row / 2] >> (4 - column / 2) & 1)
+                            Set(x + column, y + row, {1, 1, 1});
                     }
                 }
             }
@@ -92,7 +100,8 @@ private:
 /// The value that a share of them does not pass, so that a few extremes do not hide the rest.
 float FindQuantile(std::vector<float> values, double share) {
     if (values.empty()) return 0.0f;
-    auto const at = values.begin() + static_cast<ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    auto const at =
+        values.begin() + static_cast<ptrdiff_t>(share * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), at, values.end());
     return *at;
 }
@@ -119,7 +128,8 @@ void PreviewBuilder::Add(int row, TexelRowView const& texels) {
         _weights[to] += weight;
         for (int c = 0; c < _map.GetNumChannels(); ++c) {
             _sums[c * numTexels + to] +=
-                weight * texels.values[static_cast<size_t>(_firstChannel + c) * texels.stride + static_cast<size_t>(x)];
+                weight * texels.values[static_cast<size_t>(_firstChannel + c) * texels.stride +
+                                       static_cast<size_t>(x)];
         }
     }
 }
@@ -133,7 +143,8 @@ PreviewBuilder::Picture PreviewBuilder::DrawFlow() const {
         isInside[texel] = 1;
         // Texture coordinates to texels, v upwards.
         flow[2 * texel] = (_sums[texel] / _weights[texel] - _map.zero) * static_cast<float>(_width);
-        flow[2 * texel + 1] = -(_sums[numTexels + texel] / _weights[texel] - _map.zero) * static_cast<float>(_height);
+        flow[2 * texel + 1] =
+            -(_sums[numTexels + texel] / _weights[texel] - _map.zero) * static_cast<float>(_height);
     }
     std::vector<uint8_t> const grey = ConvolveLines(_width, _height, flow, isInside);
     Picture picture;
@@ -158,7 +169,9 @@ PreviewBuilder::Picture PreviewBuilder::Draw() const {
     for (int c = 0; c < (isColour ? 3 : 1); ++c) {
         std::vector<float> values;
         for (size_t texel = 0; texel < numTexels; ++texel) {
-            if (_weights[texel] > 0.0f) values.push_back(_map.isSigned && !isColour ? std::abs(value(c, texel)) : value(c, texel));
+            if (_weights[texel] > 0.0f)
+                values.push_back(_map.isSigned && !isColour ? std::abs(value(c, texel))
+                                                            : value(c, texel));
         }
         if (_map.isSigned && !isColour) {
             high[c] = FindQuantile(std::move(values), 0.98);
@@ -178,7 +191,9 @@ PreviewBuilder::Picture PreviewBuilder::Draw() const {
     picture.height = _height + kLegendHeight;
     picture.pixels.assign(static_cast<size_t>(picture.width) * picture.height * 3, 38);
     Canvas canvas(picture);
-    auto const unit = [&](int c, float v) { return high[c] > low[c] ? (v - low[c]) / (high[c] - low[c]) : 0.5f; };
+    auto const unit = [&](int c, float v) {
+        return high[c] > low[c] ? (v - low[c]) / (high[c] - low[c]) : 0.5f;
+    };
     for (size_t texel = 0; texel < numTexels; ++texel) {
         if (!(_weights[texel] > 0.0f)) continue;
         Colour colour;
@@ -199,8 +214,11 @@ PreviewBuilder::Picture PreviewBuilder::Draw() const {
     canvas.Text(8, textY, left);
     canvas.Text(picture.width - 8 - Canvas::TextWidth(right), textY, right);
     for (int x = rampBegin; x < rampEnd; ++x) {
-        float const t = static_cast<float>(x - rampBegin) / static_cast<float>(std::max(1, rampEnd - rampBegin - 1));
-        Colour const colour = isColour ? Colour{t, t, t} : _map.isSigned ? Diverging(2 * t - 1) : Sequential(t);
+        float const t = static_cast<float>(x - rampBegin) /
+                        static_cast<float>(std::max(1, rampEnd - rampBegin - 1));
+        Colour const colour = isColour        ? Colour{t, t, t}
+                              : _map.isSigned ? Diverging(2 * t - 1)
+                                              : Sequential(t);
         for (int y = 0; y < 14; ++y) canvas.Set(x, textY + y, colour);
     }
     return picture;
@@ -210,8 +228,8 @@ void WritePng(std::string const& path, PreviewBuilder::Picture const& picture) {
     AtomicFile file(path);
     ImagesModule const& images = LoadImagesModule();
     std::array<char, 512> reason{};
-    if (!images.writePng(file.GetTemporaryPath().c_str(), picture.width, picture.height, picture.pixels.data(),
-                         reason.data(), reason.size())) {
+    if (!images.writePng(file.GetTemporaryPath().c_str(), picture.width, picture.height,
+                         picture.pixels.data(), reason.data(), reason.size())) {
         throw Error(ErrorCode::Io, fmt::format("'{}' cannot be written: {}", path, reason.data()));
     }
     file.Commit();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -31,7 +32,7 @@ private:
 
     Map _map;
     int _firstChannel, _factor, _width, _height, _sourceWidth;
-    std::vector<float> _sums;    // [channel][texel]
+    std::vector<float> _sums;  // [channel][texel]
     std::vector<float> _weights;
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/strip_baker.h"
 
 #include <algorithm>
@@ -10,8 +11,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "engine/images/pixel_kernel.h"
 #include "engine/fit/bands.h"
+#include "engine/images/pixel_kernel.h"
 #include "engine/scene/subdivision_names.h"
 #include "eval/surface/face_places.h"
 #include "far_ext/error.h"
@@ -24,7 +25,7 @@ struct BandBaker::Worker {
     eval::FaceTree tree;
     eval::SurfaceSampler sampler;
     UVRaster raster;
-    std::vector<float> block;  // map values of a block of samples
+    std::vector<float> block;         // map values of a block of samples
     UninitializedVector<int> places;  // the texels they belong to
     std::vector<std::array<double, 4>> jacobians;
     std::optional<SurfaceNoise::Sampler> noise;
@@ -54,9 +55,12 @@ void Scatter(std::span<int const> places, float const* from, float* to) {
     size_t i = 0;
     for (; i + kGroup <= places.size(); i += kGroup) {
         int apart = 0;
-        for (size_t k = 0; k < kGroup; ++k) apart |= places[i + k] - static_cast<int>(k) - places[i];
-        if (apart == 0) std::memcpy(to + places[i], from + i, sizeof(float) * kGroup);
-        else for (size_t k = 0; k < kGroup; ++k) to[places[i + k]] = from[i + k];
+        for (size_t k = 0; k < kGroup; ++k)
+            apart |= places[i + k] - static_cast<int>(k) - places[i];
+        if (apart == 0)
+            std::memcpy(to + places[i], from + i, sizeof(float) * kGroup);
+        else
+            for (size_t k = 0; k < kGroup; ++k) to[places[i + k]] = from[i + k];
     }
     for (; i < places.size(); ++i) to[places[i]] = from[i];
 }
@@ -65,10 +69,14 @@ void Scatter(std::span<int const> places, float const* from, float* to) {
 int ChooseFieldLevels(Scene const& scene, BakeOptions const& options) {
     double const numFaces = std::max<double>(1.0, scene.cage.GetNumFaces());
     std::set<std::pair<double, double>> tiles;
-    for (size_t i = 0; i < scene.uvs.size(); i += 2) tiles.emplace(std::floor(scene.uvs[i]), std::floor(scene.uvs[i + 1]));
-    double const texels = static_cast<double>(options.width) * options.height * static_cast<double>(tiles.size());
+    for (size_t i = 0; i < scene.uvs.size(); i += 2)
+        tiles.emplace(std::floor(scene.uvs[i]), std::floor(scene.uvs[i + 1]));
+    double const texels =
+        static_cast<double>(options.width) * options.height * static_cast<double>(tiles.size());
     int levels = 0;
-    while (levels < 8 && 4.0 * numFaces * std::pow(4.0, levels) < texels && numFaces * std::pow(4.0, levels + 1) < 1e6) ++levels;
+    while (levels < 8 && 4.0 * numFaces * std::pow(4.0, levels) < texels &&
+           numFaces * std::pow(4.0, levels + 1) < 1e6)
+        ++levels;
     return levels;
 }
 
@@ -91,9 +99,9 @@ BandBaker::BandBaker(Scene const& scene, Far::TopologyRefiner const& refiner, Sc
       _quantity(FindQuantity(maps)),
       _hasTexels(scene.cage.faceSizes.size()) {
     if (!scene.HasUVs()) {
-        throw Error(ErrorCode::BadMesh,
-                    fmt::format("{}: the mesh has no texture coordinates; a bake needs them ('vt' in OBJ, s,t in PLY)",
-                                scene.path));
+        throw Error(ErrorCode::BadMesh, fmt::format("{}: the mesh has no texture coordinates; a "
+                                                    "bake needs them ('vt' in OBJ, s,t in PLY)",
+                                                    scene.path));
     }
     for (Map const& map : maps) {
         _numPlanes += map.GetNumChannels();
@@ -101,12 +109,15 @@ BandBaker::BandBaker(Scene const& scene, Far::TopologyRefiner const& refiner, Sc
     }
     _surface = std::make_unique<eval::LimitSurface>(_refiner);
     _uvSurface = std::make_unique<eval::LimitSurface>(_refiner, 0);
-    if (other && (other->cage.faceVertices != scene.cage.faceVertices || other->cage.faceSizes != scene.cage.faceSizes)) {
+    if (other && (other->cage.faceVertices != scene.cage.faceVertices ||
+                  other->cage.faceSizes != scene.cage.faceSizes)) {
         _finer = eval::FinerSurface::Build(*_surface, scene.cage, other->cage, other->positions);
         if (!_finer) {
-            throw Error(ErrorCode::BadMesh, fmt::format("{}: its faces differ from those of '{}'; --against needs the same faces and vertices in the same "
-                                                        "order, or these refined by the same --scheme ({})",
-                                                        other->path, scene.path, GetName(scene.cage.scheme)));
+            throw Error(ErrorCode::BadMesh,
+                        fmt::format("{}: its faces differ from those of '{}'; --against needs the "
+                                    "same faces and vertices in the same "
+                                    "order, or these refined by the same --scheme ({})",
+                                    other->path, scene.path, GetName(scene.cage.scheme)));
         }
     }
 
@@ -123,12 +134,14 @@ BandBaker::BandBaker(Scene const& scene, Far::TopologyRefiner const& refiner, Sc
     }
     size_t first = 0;
     for (Primvar const& primvar : scene.primvars) {
-        _values.push_back({std::span(_primvarValues).subspan(first, primvar.values.size()), primvar.numChannels});
+        _values.push_back(
+            {std::span(_primvarValues).subspan(first, primvar.values.size()), primvar.numChannels});
         first += primvar.values.size();
     }
 
     auto const has = [&](MapKind kind) {
-        return std::any_of(maps.begin(), maps.end(), [&](Map const& map) { return map.kind == kind; });
+        return std::any_of(maps.begin(), maps.end(),
+                           [&](Map const& map) { return map.kind == kind; });
     };
     if (has(MapKind::Bands)) {
         int const numBands = options.maps.numBands;
@@ -143,7 +156,8 @@ BandBaker::BandBaker(Scene const& scene, Far::TopologyRefiner const& refiner, Sc
     if (other && !_finer) _values.push_back({other->positions, 3});
     if (has(MapKind::Noise)) _noise = std::make_unique<SurfaceNoise>(scene, options.noise);
     if (has(MapKind::Field)) {
-        _field = std::make_unique<eval::FieldSurface>(scene.cage, scene.positions, options.field, ChooseFieldLevels(scene, options));
+        _field = std::make_unique<eval::FieldSurface>(scene.cage, scene.positions, options.field,
+                                                      ChooseFieldLevels(scene, options));
     }
 
     _bounds.resize(_isBaked.size());
@@ -170,12 +184,15 @@ double BandBaker::FindMeanArea() {
             if (!_isBaked[face]) continue;
             worker.tree.Bind(face);
             worker.raster.Bind(face);
-            eval::ForEachGaussPoint(*_surface, face, [&](eval::FacePlace const& place, double weight) {
-                auto const sample = eval::EvaluateSample(worker.tree, place.domain, place.s, place.t, 1.0);
-                auto const [us, ut, vs, vt] = worker.raster.GetJacobian(place.domain, place.s, place.t);
-                areas[face].surface += weight * sample.tangentS.cross(sample.tangentT).norm();
-                areas[face].texture += weight * std::abs(us * vt - ut * vs);
-            });
+            eval::ForEachGaussPoint(
+                *_surface, face, [&](eval::FacePlace const& place, double weight) {
+                    auto const sample =
+                        eval::EvaluateSample(worker.tree, place.domain, place.s, place.t, 1.0);
+                    auto const [us, ut, vs, vt] =
+                        worker.raster.GetJacobian(place.domain, place.s, place.t);
+                    areas[face].surface += weight * sample.tangentS.cross(sample.tangentT).norm();
+                    areas[face].texture += weight * std::abs(us * vt - ut * vs);
+                });
         }
     });
     Areas total;
@@ -197,7 +214,8 @@ bool BandBaker::LeavesUdimRange(Index face) {
     for (int domain = 0; domain < _uvSurface->GetNumDomains(face); ++domain) {
         for (int j = 0; j <= kSteps; ++j) {
             for (int i = 0; i <= kSteps - (_uvSurface->IsLoop() ? j : 0); ++i) {
-                auto const [u, v] = raster.Evaluate(domain, static_cast<double>(i) / kSteps, static_cast<double>(j) / kSteps);
+                auto const [u, v] = raster.Evaluate(domain, static_cast<double>(i) / kSteps,
+                                                    static_cast<double>(j) / kSteps);
                 if (u < -kSlack || u > 10.0 + kSlack || v < -kSlack) return true;
             }
         }
@@ -233,19 +251,24 @@ std::shared_ptr<Band> BandBaker::AcquireBand(int index, TileGrid const& grid) {
             }};
 }
 
-std::shared_ptr<Band> BandBaker::MakeBand(int index, TileGrid grid, std::vector<std::vector<Index>> const& blocks) {
+std::shared_ptr<Band> BandBaker::MakeBand(int index, TileGrid grid,
+                                          std::vector<std::vector<Index>> const& blocks) {
     CheckInterrupted();
     Worker& worker = LocalWorker();
     std::shared_ptr<Band> band = AcquireBand(index, grid);
-    auto const finish = [&](int firstColumn, int numColumns) { FinishBlock(*band, firstColumn, numColumns); };
+    auto const finish = [&](int firstColumn, int numColumns) {
+        FinishBlock(*band, firstColumn, numColumns);
+    };
     if (_options.samplesPerSide == 1) {
-        RasterSamples(worker, grid, blocks, band->texels, band->planes.data(), [&](int firstColumn, int numColumns) {
-            for (int row = 0; row < band->texels.numRows; ++row) {
-                size_t const at = static_cast<size_t>(row) * grid.width + firstColumn;
-                for (size_t i = at; i < at + numColumns; ++i) band->isCovered[i] = band->texels.owner[i] >= 0;
-            }
-            finish(firstColumn, numColumns);
-        });
+        RasterSamples(worker, grid, blocks, band->texels, band->planes.data(),
+                      [&](int firstColumn, int numColumns) {
+                          for (int row = 0; row < band->texels.numRows; ++row) {
+                              size_t const at = static_cast<size_t>(row) * grid.width + firstColumn;
+                              for (size_t i = at; i < at + numColumns; ++i)
+                                  band->isCovered[i] = band->texels.owner[i] >= 0;
+                          }
+                          finish(firstColumn, numColumns);
+                      });
     } else {
         Supersample(worker, grid, blocks, *band);
         finish(0, grid.width);
@@ -263,35 +286,40 @@ void BandBaker::FinishBlock(Band& band, int firstColumn, int numColumns) {
         size_t numCovered = 0;
         for (size_t i = 0; i < count; ++i) numCovered += covered[i];
         band.numCovered += numCovered;
-        if (uint8_t const* const overlap = &band.texels.overlap[at]; std::memchr(overlap, 1, count)) {
+        if (uint8_t const* const overlap = &band.texels.overlap[at];
+            std::memchr(overlap, 1, count)) {
             _overlaps += static_cast<size_t>(std::count(overlap, overlap + count, 1));
         }
         if (uint8_t const* const failed = &band.texels.failed[at]; std::memchr(failed, 1, count)) {
             for (size_t i = 0; i < count; ++i) _newtonFailures += failed[i] && !covered[i];
         }
         for (size_t plane = 0; numCovered > 0 && plane < band.low.size(); ++plane) {
-            FindRange(&band.planes[plane * numTexels + at], covered, count, &band.low[plane], &band.high[plane]);
+            FindRange(&band.planes[plane * numTexels + at], covered, count, &band.low[plane],
+                      &band.high[plane]);
         }
     }
 }
 
 /// Texels that no face has been asked about yet: no owner, zeros.
-void BandBaker::ClearBlock(TexelBand& texels, float* planes, int firstColumn, int numColumns) const {
+void BandBaker::ClearBlock(TexelBand& texels, float* planes, int firstColumn,
+                           int numColumns) const {
     size_t const count = static_cast<size_t>(numColumns), numTexels = texels.owner.size();
     for (int row = 0; row < texels.numRows; ++row) {
         size_t const at = static_cast<size_t>(row) * texels.width + firstColumn;
         std::fill_n(&texels.owner[at], count, -1);
         std::fill_n(&texels.overlap[at], count, uint8_t{0});
         std::fill_n(&texels.failed[at], count, uint8_t{0});
-        for (int plane = 0; plane < _numPlanes; ++plane) std::fill_n(planes + plane * numTexels + at, count, 0.0f);
+        for (int plane = 0; plane < _numPlanes; ++plane)
+            std::fill_n(planes + plane * numTexels + at, count, 0.0f);
     }
 }
 
-/// Fills `texels` and `planes` block by block, while the block is in the cache; finish(first column, number
-/// of columns) is called after each.
+/// Fills `texels` and `planes` block by block, while the block is in the cache; finish(first
+/// column, number of columns) is called after each.
 template <class Finish>
-void BandBaker::RasterSamples(Worker& worker, TileGrid const& grid, std::vector<std::vector<Index>> const& blocks,
-                              TexelBand& texels, float* planes, Finish finish) {
+void BandBaker::RasterSamples(Worker& worker, TileGrid const& grid,
+                              std::vector<std::vector<Index>> const& blocks, TexelBand& texels,
+                              float* planes, Finish finish) {
     size_t const planeSize = texels.owner.size();
     size_t untilCheck = 0;
     for (size_t block = 0; block < blocks.size(); ++block) {
@@ -316,8 +344,8 @@ void BandBaker::RasterSamples(Worker& worker, TileGrid const& grid, std::vector<
     }
 }
 
-void BandBaker::EvaluateHits(Worker& worker, Index face, int domain, TexelHits const& hits, float* planes,
-                             size_t planeSize) {
+void BandBaker::EvaluateHits(Worker& worker, Index face, int domain, TexelHits const& hits,
+                             float* planes, size_t planeSize) {
     _hasTexels[face].store(true, std::memory_order_relaxed);
     if (_noise) {
         worker.noiseValues.resize(hits.s.size());
@@ -331,40 +359,52 @@ void BandBaker::EvaluateHits(Worker& worker, Index face, int domain, TexelHits c
         worker.finerPoints.resize(hits.s.size());
         worker.finer->Evaluate(face, domain, hits.s, hits.t, worker.finerPoints);
     }
-    worker.sampler.Evaluate(domain, hits.s, hits.t, [&](std::span<int const> samples, float const* values, size_t stride) {
-        worker.places.resize(samples.size());
-        for (size_t i = 0; i < samples.size(); ++i) worker.places[i] = hits.texel[samples[i]];
-        worker.jacobians.clear();
-        if (_needsJacobian) {
+    worker.sampler.Evaluate(
+        domain, hits.s, hits.t,
+        [&](std::span<int const> samples, float const* values, size_t stride) {
+            worker.places.resize(samples.size());
+            for (size_t i = 0; i < samples.size(); ++i) worker.places[i] = hits.texel[samples[i]];
+            worker.jacobians.clear();
+            if (_needsJacobian) {
+                for (int sample : samples) {
+                    worker.jacobians.push_back(
+                        worker.raster.GetJacobian(domain, hits.s[sample], hits.t[sample]));
+                }
+            }
+            worker.noiseBlock.clear();
+            worker.fieldBlock.clear();
+            worker.finerBlock.clear();
             for (int sample : samples) {
-                worker.jacobians.push_back(worker.raster.GetJacobian(domain, hits.s[sample], hits.t[sample]));
+                if (_noise) worker.noiseBlock.push_back(worker.noiseValues[sample]);
+                if (_field) worker.fieldBlock.push_back(worker.fieldValues[sample]);
+                if (_finer) worker.finerBlock.push_back(worker.finerPoints[sample]);
             }
-        }
-        worker.noiseBlock.clear();
-        worker.fieldBlock.clear();
-        worker.finerBlock.clear();
-        for (int sample : samples) {
-            if (_noise) worker.noiseBlock.push_back(worker.noiseValues[sample]);
-            if (_field) worker.fieldBlock.push_back(worker.fieldValues[sample]);
-            if (_finer) worker.finerBlock.push_back(worker.finerPoints[sample]);
-        }
-        MapSamples const block{_quantity, values, stride, samples.size(), worker.jacobians, _meanArea, worker.noiseBlock,
-                               _noise ? _noise->GetLow() : 0.0, _noise ? _noise->GetHigh() : 0.0, worker.fieldBlock, worker.finerBlock};
-        float* plane = planes;
-        for (Map const& map : _maps) {
-            size_t const numChannels = static_cast<size_t>(map.GetNumChannels());
-            worker.block.resize(numChannels * stride);
-            EvaluateMap(map, _options.maps, block, worker.block.data(), stride);
-            for (size_t c = 0; c < numChannels; ++c, plane += planeSize) {
-                Scatter(worker.places, &worker.block[c * stride], plane);
+            MapSamples const block{_quantity,
+                                   values,
+                                   stride,
+                                   samples.size(),
+                                   worker.jacobians,
+                                   _meanArea,
+                                   worker.noiseBlock,
+                                   _noise ? _noise->GetLow() : 0.0,
+                                   _noise ? _noise->GetHigh() : 0.0,
+                                   worker.fieldBlock,
+                                   worker.finerBlock};
+            float* plane = planes;
+            for (Map const& map : _maps) {
+                size_t const numChannels = static_cast<size_t>(map.GetNumChannels());
+                worker.block.resize(numChannels * stride);
+                EvaluateMap(map, _options.maps, block, worker.block.data(), stride);
+                for (size_t c = 0; c < numChannels; ++c, plane += planeSize) {
+                    Scatter(worker.places, &worker.block[c * stride], plane);
+                }
             }
-        }
-    });
+        });
 }
 
 /// Averages N x N ordered samples per texel over those that are covered.
-void BandBaker::Supersample(Worker& worker, TileGrid const& grid, std::vector<std::vector<Index>> const& blocks,
-                            Band& band) {
+void BandBaker::Supersample(Worker& worker, TileGrid const& grid,
+                            std::vector<std::vector<Index>> const& blocks, Band& band) {
     int const n = _options.samplesPerSide;
     size_t const numTexels = band.GetNumTexels();
     std::vector<int> numHits(numTexels, 0);
@@ -378,9 +418,11 @@ void BandBaker::Supersample(Worker& worker, TileGrid const& grid, std::vector<st
             TileGrid offset = grid;
             offset.offsetX = (i + 0.5) / n;
             offset.offsetY = (j + 0.5) / n;
-            worker.sampleTexels.Resize(band.texels.firstRow, band.texels.numRows, band.texels.width);
+            worker.sampleTexels.Resize(band.texels.firstRow, band.texels.numRows,
+                                       band.texels.width);
             sample.resize(band.planes.size());
-            RasterSamples(worker, offset, blocks, worker.sampleTexels, sample.data(), [](int, int) {});
+            RasterSamples(worker, offset, blocks, worker.sampleTexels, sample.data(),
+                          [](int, int) {});
             size_t plane = 0, line = 0;
             for (Map const& map : _maps) {
                 size_t const numChannels = static_cast<size_t>(map.GetNumChannels());
@@ -418,7 +460,8 @@ void BandBaker::Supersample(Worker& worker, TileGrid const& grid, std::vector<st
             float* const values = &band.planes[plane * numTexels + k];
             if (map.averaging == Averaging::Line) {
                 std::array<double, 6> sum;
-                for (size_t c = 0; c < 6; ++c) sum[c] = worker.lineSums[(line * 6 + c) * numTexels + k];
+                for (size_t c = 0; c < 6; ++c)
+                    sum[c] = worker.lineSums[(line * 6 + c) * numTexels + k];
                 auto const direction = FindMainLine(sum);
                 for (size_t c = 0; c < 3; ++c) values[c * numTexels] = direction[c];
                 ++line;
@@ -426,7 +469,8 @@ void BandBaker::Supersample(Worker& worker, TileGrid const& grid, std::vector<st
                 float divisor = static_cast<float>(numHits[k]);
                 if (map.averaging == Averaging::UnitVector) {
                     float squares = 0.0f;
-                    for (size_t c = 0; c < numChannels; ++c) squares += values[c * numTexels] * values[c * numTexels];
+                    for (size_t c = 0; c < numChannels; ++c)
+                        squares += values[c * numTexels] * values[c * numTexels];
                     if (squares > 0.0f) divisor = std::sqrt(squares);
                 }
                 for (size_t c = 0; c < numChannels; ++c) values[c * numTexels] /= divisor;
@@ -441,7 +485,8 @@ std::string BandBaker::NamePlace(eval::SurfaceSampler::Place const& place) const
     auto const vertices = level.GetFaceVertices(place.face);
     int corner;
     if (_surface->GetNumDomains(place.face) > 1) {
-        if (place.s + place.t > 1.0) return fmt::format("the centre of {}", _scene.NameFace(place.face));
+        if (place.s + place.t > 1.0)
+            return fmt::format("the centre of {}", _scene.NameFace(place.face));
         corner = place.domain;
     } else if (_surface->IsLoop()) {
         corner = place.s > 0.5 ? 1 : place.t > 0.5 ? 2 : 0;

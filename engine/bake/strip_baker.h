@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <atomic>
@@ -23,13 +24,13 @@ struct Band {
     static constexpr int kRows = ExrSpec::kTileSize;
     static constexpr int kBlockColumns = 512;  ///< baked together: their values stay in the cache
 
-    int index = 0;                   ///< rows [kRows * index, ...)
+    int index = 0;  ///< rows [kRows * index, ...)
     TexelBand texels;
     UninitializedVector<float> planes;  ///< [plane][row][column]; 0 where nothing is covered
-    std::vector<uint8_t> isCovered;  ///< [row][column]
-    std::vector<uint8_t> isFilled;   ///< [row][column]: covered, or padded by PackBand
-    std::vector<float> coverage;     ///< [row][column], 0 to 1; empty without supersampling
-    std::vector<float> low, high;    ///< per plane, over covered texels; low > high if there are none
+    std::vector<uint8_t> isCovered;     ///< [row][column]
+    std::vector<uint8_t> isFilled;      ///< [row][column]: covered, or padded by PackBand
+    std::vector<float> coverage;        ///< [row][column], 0 to 1; empty without supersampling
+    std::vector<float> low, high;  ///< per plane, over covered texels; low > high if there are none
     size_t numCovered = 0;
 
     size_t GetNumTexels() const { return isCovered.size(); }
@@ -38,8 +39,8 @@ struct Band {
     }
 };
 
-/// From mesh to bands of texels: finds which face covers which texel, evaluates the surface there and
-/// computes the maps. Everything that is built once per bake lives here.
+/// From mesh to bands of texels: finds which face covers which texel, evaluates the surface there
+/// and computes the maps. Everything that is built once per bake lives here.
 ///
 /// Threads  MakeBand may run on many threads; the same bands come out.
 class BandBaker {
@@ -60,9 +61,11 @@ public:
     bool LeavesUdimRange(Index face);
 
     /// \param grid   of the tile, without sample offsets
-    /// \param blocks  per Band::kBlockColumns columns all faces that may cover a texel there, ascending
+    /// \param blocks  per Band::kBlockColumns columns all faces that may cover a texel there,
+    ///                ascending
     /// \return a band whose memory comes from, and goes back to, one that is done with
-    std::shared_ptr<Band> MakeBand(int index, TileGrid grid, std::vector<std::vector<Index>> const& blocks);
+    std::shared_ptr<Band> MakeBand(int index, TileGrid grid,
+                                   std::vector<std::vector<Index>> const& blocks);
 
     /// Adds what was counted so far, and names the vertices samples were moved away from.
     void AddCounts(BakeReport& report, std::vector<std::string>& movedPlaces) const;
@@ -72,13 +75,16 @@ private:
 
     Worker& LocalWorker();
     template <class Finish>
-    void RasterSamples(Worker& worker, TileGrid const& grid, std::vector<std::vector<Index>> const& blocks,
-                       TexelBand& texels, float* planes, Finish finish);
-    void EvaluateHits(Worker& worker, Index face, int domain, TexelHits const& hits, float* planes, size_t planeSize);
+    void RasterSamples(Worker& worker, TileGrid const& grid,
+                       std::vector<std::vector<Index>> const& blocks, TexelBand& texels,
+                       float* planes, Finish finish);
+    void EvaluateHits(Worker& worker, Index face, int domain, TexelHits const& hits, float* planes,
+                      size_t planeSize);
     std::shared_ptr<Band> AcquireBand(int index, TileGrid const& grid);
     void ClearBlock(TexelBand& texels, float* planes, int firstColumn, int numColumns) const;
     void FinishBlock(Band& band, int firstColumn, int numColumns);
-    void Supersample(Worker& worker, TileGrid const& grid, std::vector<std::vector<Index>> const& blocks, Band& band);
+    void Supersample(Worker& worker, TileGrid const& grid,
+                     std::vector<std::vector<Index>> const& blocks, Band& band);
     double FindMeanArea();
     std::string NamePlace(eval::SurfaceSampler::Place const& place) const;
 
@@ -92,7 +98,7 @@ private:
     std::vector<double> _primvarValues, _frequencyBands;
     std::vector<eval::FaceTree::Values> _values;
     std::unique_ptr<eval::LimitSurface> _surface, _uvSurface;
-    std::unique_ptr<SurfaceNoise> _noise;       // null where no map shows it
+    std::unique_ptr<SurfaceNoise> _noise;        // null where no map shows it
     std::unique_ptr<eval::FieldSurface> _field;  // likewise
     std::optional<eval::FinerSurface> _finer;    // --against, where its faces are refined ones
     std::vector<char> _isBaked;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/strip_packer.h"
 
 #include <algorithm>
@@ -12,17 +13,23 @@ namespace limn::engine {
 
 namespace {
 
-/// Fills uncovered texels of a band from the covered ones round them, tile by tile; says in `isFilled` which.
+/// Fills uncovered texels of a band from the covered ones round them, tile by tile; says in
+/// `isFilled` which.
 class Padder {
 public:
-    Padder(std::span<std::shared_ptr<Band> const> window, Band& band, int padding, std::vector<uint8_t>& isFilled)
-        : _band(band), _isFilled(isFilled), _coverage{window.front()->texels.firstRow, band.texels.width, {}} {
-        bool const isAnyCovered = std::any_of(window.begin(), window.end(), [](auto const& b) { return b->numCovered > 0; });
+    Padder(std::span<std::shared_ptr<Band> const> window, Band& band, int padding,
+           std::vector<uint8_t>& isFilled)
+        : _band(band),
+          _isFilled(isFilled),
+          _coverage{window.front()->texels.firstRow, band.texels.width, {}} {
+        bool const isAnyCovered = std::any_of(window.begin(), window.end(),
+                                              [](auto const& b) { return b->numCovered > 0; });
         _hasWork = padding > 0 && isAnyCovered && band.numCovered < band.GetNumTexels();
         if (!_hasWork) return;
         for (auto const& b : window) {
             for (int row = 0; row < b->texels.numRows; ++row) {
-                _coverage.rows.push_back(&b->isCovered[static_cast<size_t>(row) * band.texels.width]);
+                _coverage.rows.push_back(
+                    &b->isCovered[static_cast<size_t>(row) * band.texels.width]);
                 _bandOfRow.push_back(b.get());
             }
         }
@@ -43,10 +50,11 @@ public:
                 int const y = row + texels.firstRow + PaddingSearch::GetOffsetY(*offset);
                 Band const& source = *_bandOfRow[y - _coverage.firstRow];
                 size_t const to = static_cast<size_t>(row) * width + column;
-                size_t const from = static_cast<size_t>(y - source.texels.firstRow) * width + column +
-                                    PaddingSearch::GetOffsetX(*offset);
+                size_t const from = static_cast<size_t>(y - source.texels.firstRow) * width +
+                                    column + PaddingSearch::GetOffsetX(*offset);
                 for (size_t plane = 0; plane < numPlanes; ++plane) {
-                    _band.planes[plane * numTexels + to] = source.planes[plane * source.GetNumTexels() + from];
+                    _band.planes[plane * numTexels + to] =
+                        source.planes[plane * source.GetNumTexels() + from];
                 }
                 _isFilled[to] = 1;
             }
@@ -73,8 +81,9 @@ bool IsEmpty(std::vector<uint8_t> const& isFilled, size_t width, int firstColumn
 }  // namespace
 
 PackedBand PackBand(std::span<std::shared_ptr<Band> const> window, size_t at, int padding,
-                    std::vector<FileLayout> const& files, std::vector<std::unique_ptr<ExrWriter>> const& writers,
-                    bool hasCoverage, bool needsRows) {
+                    std::vector<FileLayout> const& files,
+                    std::vector<std::unique_ptr<ExrWriter>> const& writers, bool hasCoverage,
+                    bool needsRows) {
     PackedBand packed;
     packed.band = window[at];
     Band& band = *packed.band;
@@ -97,7 +106,8 @@ PackedBand PackBand(std::span<std::shared_ptr<Band> const> window, size_t at, in
     std::vector<float>& coverage = packed.coverage;
     if (hasCoverage || needsRows) {
         coverage.resize(numTexels);
-        for (size_t texel = 0; texel < numTexels; ++texel) coverage[texel] = band.GetCoverage(texel);
+        for (size_t texel = 0; texel < numTexels; ++texel)
+            coverage[texel] = band.GetCoverage(texel);
     }
     for (size_t f = 0; f < files.size(); ++f) {
         if (!writers[f]) continue;
@@ -106,7 +116,8 @@ PackedBand PackBand(std::span<std::shared_ptr<Band> const> window, size_t at, in
         auto const first = file.firstPlane, last = file.firstPlane + file.numPlanes;
         out.min = *std::min_element(band.low.begin() + first, band.low.begin() + last);
         out.max = *std::max_element(band.high.begin() + first, band.high.begin() + last);
-        float const* const filePlanes = &band.planes[static_cast<size_t>(file.firstPlane) * numTexels];
+        float const* const filePlanes =
+            &band.planes[static_cast<size_t>(file.firstPlane) * numTexels];
         out.tiles.resize(static_cast<size_t>(numTiles));
         tbb::parallel_for(0, numTiles, [&](int tile) {
             CheckInterrupted();
@@ -115,7 +126,8 @@ PackedBand PackBand(std::span<std::shared_ptr<Band> const> window, size_t at, in
                 out.tiles[tile] = writers[f]->PackEmpty(0, tile, band.index);
                 return;
             }
-            for (int c = 0; c < file.numPlanes; ++c) channels.push_back(filePlanes + c * numTexels + tile * T);
+            for (int c = 0; c < file.numPlanes; ++c)
+                channels.push_back(filePlanes + c * numTexels + tile * T);
             if (hasCoverage) channels.push_back(coverage.data() + tile * T);
             out.tiles[tile] = writers[f]->Pack(0, tile, band.index, channels.data(), width);
         });

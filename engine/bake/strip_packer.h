@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -24,13 +25,15 @@ struct PackedBand {
 
 /// Pads a band from its neighbours and packs it for each file.
 ///
-/// \param window   the band and those round it, in order, at least enough for the padding where they exist
-/// \param at       the band's place in the window. Only its uncovered texels are written, so that neighbours
-///                 may be padded from it at the same time
+/// \param window   the band and those round it, in order, at least enough for the padding where
+///                 they exist
+/// \param at       the band's place in the window. Only its uncovered texels are written, so that
+///                 neighbours may be padded from it at the same time
 /// \param writers  one per file; null for files that are not written
 /// \param needsRows  per file
 PackedBand PackBand(std::span<std::shared_ptr<Band> const> window, size_t at, int padding,
-                    std::vector<FileLayout> const& files, std::vector<std::unique_ptr<ExrWriter>> const& writers,
-                    bool hasCoverage, bool needsRows);
+                    std::vector<FileLayout> const& files,
+                    std::vector<std::unique_ptr<ExrWriter>> const& writers, bool hasCoverage,
+                    bool needsRows);
 
 }  // namespace limn::engine

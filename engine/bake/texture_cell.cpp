@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/texture_cell.h"
 
 #include <algorithm>
@@ -18,7 +19,8 @@ TextureCell::TextureCell(TexturePiece const& piece, double x, double y, double h
     double const det = us * vt - ut * vs, size = us * us + ut * ut + vs * vs + vt * vt;
     bool const isInvertible = std::abs(det) > 1e-9 * size;
     double const toInverse = isInvertible ? 1.0 / det : 0.0;
-    std::array<double, 4> const inverse{vt * toInverse, -ut * toInverse, -vs * toInverse, us * toInverse};
+    std::array<double, 4> const inverse{vt * toInverse, -ut * toInverse, -vs * toInverse,
+                                        us * toInverse};
     // How far the map strays from its linear part within the cell, plus what counts as covered.
     double const strayX = piece.GetStray(0, half) + 10 * kCoveredTexels;
     double const strayY = piece.GetStray(1, half) + 10 * kCoveredTexels;
@@ -37,10 +39,11 @@ TextureCell::TextureCell(TexturePiece const& piece, double x, double y, double h
         reach = std::min(std::max(limitX, limitY), 2.0 * half);
         double const second = 2.0 * std::hypot(piece.GetStray(0, 1.0), piece.GetStray(1, 1.0));
         bend = second * size / (det * det);  // |inverse|^2 <= size / det^2
-        // The map's Jacobian keeps half of its size within `reach`: so far outside, in parameters, a texel is
-        // more than covering's distance away.
+        // The map's Jacobian keeps half of its size within `reach`: so far outside, in parameters,
+        // a texel is more than covering's distance away.
         double const inverseNorm = std::sqrt(size) / std::abs(det);
-        if (second * reach * inverseNorm < 0.5) outside = std::max(4.0 * kCoveredTexels * inverseNorm, 1e-6);
+        if (second * reach * inverseNorm < 0.5)
+            outside = std::max(4.0 * kCoveredTexels * inverseNorm, 1e-6);
     }
     _model = {.coefficients = &piece.coefficients[0][0],
               .isTriangle = piece.isTriangle,

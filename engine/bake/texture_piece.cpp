@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/texture_piece.h"
 
 #include <algorithm>
@@ -8,7 +9,9 @@
 
 namespace limn::engine {
 
-double TexturePiece::GetCentre() const { return isTriangle ? eval::kTriangleCentre : eval::kQuadCentre; }
+double TexturePiece::GetCentre() const {
+    return isTriangle ? eval::kTriangleCentre : eval::kQuadCentre;
+}
 
 std::array<double, 3> TexturePiece::Evaluate(int coordinate, double x, double y) const {
     auto const v = isTriangle ? eval::EvaluateTrianglePolynomial(coefficients[coordinate], x, y)
@@ -40,7 +43,8 @@ bool TexturePiece::IsCollapsed() const {
     constexpr int kSteps = 4;
     for (int j = 0; j <= kSteps; ++j) {
         for (int i = 0; i <= (isTriangle ? kSteps - j : kSteps); ++i) {
-            double const x = static_cast<double>(i) / kSteps - GetCentre(), y = static_cast<double>(j) / kSteps - GetCentre();
+            double const x = static_cast<double>(i) / kSteps - GetCentre(),
+                         y = static_cast<double>(j) / kSteps - GetCentre();
             auto const u = Evaluate(0, x, y), v = Evaluate(1, x, y);
             double const det = u[1] * v[2] - u[2] * v[1];
             double const size = u[1] * u[1] + u[2] * u[2] + v[1] * v[1] + v[2] * v[2];
@@ -73,8 +77,8 @@ struct Square {
 
 }  // namespace
 
-SearchResult SearchPiece(TexturePiece const& piece, double targetX, double targetY, double tolerance, double& s,
-                         double& t) {
+SearchResult SearchPiece(TexturePiece const& piece, double targetX, double targetY,
+                         double tolerance, double& s, double& t) {
     constexpr size_t kMaxSquares = 65536;
     double const centre = piece.GetCentre();
     std::vector<Square> open{{0.5 - centre, 0.5 - centre, 0.5}};
@@ -82,11 +86,16 @@ SearchResult SearchPiece(TexturePiece const& piece, double targetX, double targe
         if (numSeen == kMaxSquares) return SearchResult::Undecided;
         Square const square = open.back();
         open.pop_back();
-        bool const isOutside = piece.isTriangle && square.x + square.y + 2 * centre - 2 * square.half > 1.0;
-        auto const u = piece.Evaluate(0, square.x, square.y), v = piece.Evaluate(1, square.x, square.y);
-        double const reachX = (std::abs(u[1]) + std::abs(u[2])) * square.half + piece.GetStray(0, square.half);
-        double const reachY = (std::abs(v[1]) + std::abs(v[2])) * square.half + piece.GetStray(1, square.half);
-        if (isOutside || std::abs(targetX - u[0]) > reachX + tolerance || std::abs(targetY - v[0]) > reachY + tolerance) {
+        bool const isOutside =
+            piece.isTriangle && square.x + square.y + 2 * centre - 2 * square.half > 1.0;
+        auto const u = piece.Evaluate(0, square.x, square.y),
+                   v = piece.Evaluate(1, square.x, square.y);
+        double const reachX =
+            (std::abs(u[1]) + std::abs(u[2])) * square.half + piece.GetStray(0, square.half);
+        double const reachY =
+            (std::abs(v[1]) + std::abs(v[2])) * square.half + piece.GetStray(1, square.half);
+        if (isOutside || std::abs(targetX - u[0]) > reachX + tolerance ||
+            std::abs(targetY - v[0]) > reachY + tolerance) {
             continue;
         }
         double x = square.x, y = square.y;
@@ -94,7 +103,8 @@ SearchResult SearchPiece(TexturePiece const& piece, double targetX, double targe
         if (isSmall || Polish(piece, targetX, targetY, x, y)) {
             s = x + centre;
             t = y + centre;
-            bool const isInside = s >= 0.0 && t >= 0.0 && (piece.isTriangle ? s + t <= 1.0 : s <= 1.0 && t <= 1.0);
+            bool const isInside =
+                s >= 0.0 && t >= 0.0 && (piece.isTriangle ? s + t <= 1.0 : s <= 1.0 && t <= 1.0);
             if (isInside) return SearchResult::Found;
             if (isSmall) continue;
         }

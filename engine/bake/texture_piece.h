@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -8,11 +9,11 @@ namespace limn::engine {
 
 /// A polynomial piece of the texture map, in texels about a whole-numbered origin.
 struct TexturePiece {
-    double coefficients[2][16];    ///< see patch_polynomial.h; 15 used on a triangle
+    double coefficients[2][16];  ///< see patch_polynomial.h; 15 used on a triangle
     double originX = 0.0, originY = 0.0;
-    double bounds[2][3];           ///< of |d2/dxx|, |d2/dxy|, |d2/dyy| over the piece, per coordinate
-    double reach[2];               ///< how far the map strays from its value at the centre
-    far_ext::SubDomain domain;     ///< of the piece within the face's domain
+    double bounds[2][3];        ///< of |d2/dxx|, |d2/dxy|, |d2/dyy| over the piece, per coordinate
+    double reach[2];            ///< how far the map strays from its value at the centre
+    far_ext::SubDomain domain;  ///< of the piece within the face's domain
     bool isTriangle = false;
 
     double GetCentre() const;
@@ -35,10 +36,10 @@ struct TexturePiece {
 
 enum class SearchResult { Found, NotThere, Undecided };
 
-/// Looks for (s, t) in the piece's domain with map(s, t) within `tolerance` texels of the target, where
-/// Newton's method alone gave no answer: cuts the domain into quarters, drops those whose bounds exclude
-/// the target, and starts Newton from the others.
-SearchResult SearchPiece(TexturePiece const& piece, double targetX, double targetY, double tolerance, double& s,
-                         double& t);
+/// Looks for (s, t) in the piece's domain with map(s, t) within `tolerance` texels of the target,
+/// where Newton's method alone gave no answer: cuts the domain into quarters, drops those whose
+/// bounds exclude the target, and starts Newton from the others.
+SearchResult SearchPiece(TexturePiece const& piece, double targetX, double targetY,
+                         double tolerance, double& s, double& t);
 
 }  // namespace limn::engine

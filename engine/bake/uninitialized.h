@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -6,7 +7,8 @@
 
 namespace limn::engine {
 
-/// Leaves what a vector grows by as it is found: for buffers whose every element is written before it is read.
+/// Leaves what a vector grows by as it is found: for buffers whose every element is written before
+/// it is read.
 template <class T>
 struct UninitializedAllocator : std::allocator<T> {
     template <class U>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/uv_raster.h"
 
 #include <algorithm>
@@ -13,11 +14,13 @@ namespace {
 
 constexpr double kClampParameter = 1e-6;
 constexpr double kOverlapParameter = 1e-3;  // nearer to an edge two faces may well share a texel
-constexpr int kMaxDepth = 30;       // pieces below 2^-30 of a face are linear to any precision
+constexpr int kMaxDepth = 30;  // pieces below 2^-30 of a face are linear to any precision
 
 /// Where the run of texels from `begin` on that lie inside and have no owner ends.
 int FindEndOfHits(eval::Whereabouts const* where, Index const* owner, int begin, int end) {
-    auto const isHit = [&](int i) { return (where[i] == eval::Whereabouts::Inside) & (owner[i] < 0); };
+    auto const isHit = [&](int i) {
+        return (where[i] == eval::Whereabouts::Inside) & (owner[i] < 0);
+    };
     constexpr int kGroup = 8;
     int i = begin;
     for (bool areHits = true; i + kGroup <= end; i += kGroup) {
@@ -62,7 +65,8 @@ UVBounds UVRaster::GetBounds(Index face) {
             double const* const c = _tree.GetLeaf(0).coefficients + 16 * k;
             double const middle = _tree.GetOrigin(0)[k] + c[0];
             double reach = 0.0;
-            for (int i = 1; i < 16; ++i) reach += std::abs(c[i]) * std::ldexp(1.0, -(i % 4 + i / 4));
+            for (int i = 1; i < 16; ++i)
+                reach += std::abs(c[i]) * std::ldexp(1.0, -(i % 4 + i / 4));
             low[k] = std::max(low[k], middle - reach);
             high[k] = std::min(high[k], middle + reach);
         }
@@ -74,7 +78,8 @@ UVBounds UVRaster::GetBounds(Index face) {
 }
 
 std::array<double, 2> UVRaster::Evaluate(int domain, double s, double t) {
-    return {eval::EvaluateChannel(_tree, domain, s, t, 0), eval::EvaluateChannel(_tree, domain, s, t, 1)};
+    return {eval::EvaluateChannel(_tree, domain, s, t, 0),
+            eval::EvaluateChannel(_tree, domain, s, t, 1)};
 }
 
 std::array<double, 4> UVRaster::GetJacobian(int domain, double s, double t) {
@@ -90,8 +95,8 @@ std::array<double, 4> UVRaster::GetJacobian(int domain, double s, double t) {
     return jacobian;
 }
 
-std::vector<TexelHits> const& UVRaster::Rasterise(Index face, TileGrid const& grid, TexelBand& band, int firstColumn,
-                                                  int numColumns) {
+std::vector<TexelHits> const& UVRaster::Rasterise(Index face, TileGrid const& grid, TexelBand& band,
+                                                  int firstColumn, int numColumns) {
     _firstColumn = firstColumn;
     _lastColumn = std::min(grid.width, firstColumn + numColumns) - 1;
     _tree.Bind(face);
@@ -102,7 +107,8 @@ std::vector<TexelHits> const& UVRaster::Rasterise(Index face, TileGrid const& gr
     if (_hits.size() < numDomains) _hits.resize(numDomains);
     for (size_t domain = 0; domain < _hits.size(); ++domain) {
         _hits[domain].Clear();
-        if (domain < numDomains) RasterNode(_tree.GetRoot(static_cast<int>(domain)), 0, _hits[domain]);
+        if (domain < numDomains)
+            RasterNode(_tree.GetRoot(static_cast<int>(domain)), 0, _hits[domain]);
     }
     return _hits;
 }
@@ -111,25 +117,30 @@ void UVRaster::RasterNode(int node, int depth, TexelHits& hits) {
     if (_tree.IsLeaf(node)) return RasterPiece(_tree.GetLeaf(node), _tree.GetDomain(node), hits);
     // The node's points hold its limit; where no sample lies among them nothing is to be found.
     auto const u = _tree.GetBounds(node, 0), v = _tree.GetBounds(node, 1);
-    double minX = _grid.ToX(u[0]), maxX = _grid.ToX(u[1]), minY = _grid.ToY(v[1]), maxY = _grid.ToY(v[0]);
+    double minX = _grid.ToX(u[0]), maxX = _grid.ToX(u[1]), minY = _grid.ToY(v[1]),
+           maxY = _grid.ToY(v[0]);
     double const slack = 2 * kCoveredTexels;
     minX = std::max(minX - slack, static_cast<double>(_firstColumn));
     maxX = std::min(maxX + slack, static_cast<double>(_lastColumn));
     minY = std::max(minY - slack, static_cast<double>(_band->firstRow));
     maxY = std::min(maxY + slack, _band->firstRow + _band->numRows - 1.0);
     if (std::ceil(minX) > std::floor(maxX) || std::ceil(minY) > std::floor(maxY)) return;
-    if (depth >= kMaxDepth) return RasterPiece(_tree.GetLinearLeaf(node), _tree.GetDomain(node), hits);
-    for (int child = 0; child < 4; ++child) RasterNode(_tree.GetChild(node, child), depth + 1, hits);
+    if (depth >= kMaxDepth)
+        return RasterPiece(_tree.GetLinearLeaf(node), _tree.GetDomain(node), hits);
+    for (int child = 0; child < 4; ++child)
+        RasterNode(_tree.GetChild(node, child), depth + 1, hits);
 }
 
-void UVRaster::RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain const& domain, TexelHits& hits) {
+void UVRaster::RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain const& domain,
+                           TexelHits& hits) {
     int const n = _tree.GetNumCoefficients();
     TexturePiece piece;
     piece.isTriangle = _isTriangle;
     piece.domain = domain;
     double const scale[2] = {static_cast<double>(_grid.width), -static_cast<double>(_grid.height)};
     for (int k = 0; k < 2; ++k) {
-        for (int i = 0; i < n; ++i) piece.coefficients[k][i] = leaf.coefficients[k * n + i] * scale[k];
+        for (int i = 0; i < n; ++i)
+            piece.coefficients[k][i] = leaf.coefficients[k * n + i] * scale[k];
     }
     double const centreX = _grid.ToX(leaf.origin[0] + leaf.coefficients[0]);
     double const centreY = _grid.ToY(leaf.origin[1] + leaf.coefficients[n]);
@@ -140,7 +151,8 @@ void UVRaster::RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain cons
     piece.coefficients[1][0] = centreY - piece.originY;
     piece.FindBounds();
     double const top = _band->firstRow - 1.0, bottom = _band->firstRow + _band->numRows + 0.0;
-    if (centreY + piece.reach[1] < top || centreY - piece.reach[1] > bottom || centreX + piece.reach[0] < _firstColumn - 1.0 ||
+    if (centreY + piece.reach[1] < top || centreY - piece.reach[1] > bottom ||
+        centreX + piece.reach[0] < _firstColumn - 1.0 ||
         centreX - piece.reach[0] > _lastColumn + 1.0 || piece.IsCollapsed()) {
         return;
     }
@@ -151,22 +163,26 @@ void UVRaster::RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain cons
     for (int j = 0; j < numCells; ++j) {
         for (int i = 0; i < numCells; ++i) {
             if (_isTriangle && i + j >= numCells) continue;
-            RasterCell(piece, (2 * i + 1) * half - _tree.GetCentre(), (2 * j + 1) * half - _tree.GetCentre(),
-                       half, hits);
+            RasterCell(piece, (2 * i + 1) * half - _tree.GetCentre(),
+                       (2 * j + 1) * half - _tree.GetCentre(), half, hits);
         }
     }
 }
 
-void UVRaster::RasterCell(TexturePiece const& piece, double x, double y, double half, TexelHits& hits) {
+void UVRaster::RasterCell(TexturePiece const& piece, double x, double y, double half,
+                          TexelHits& hits) {
     TextureCell cell(piece, x, y, half);
     _rows.clear();
     auto const [low, high] = cell.FindRows();
-    int const firstRow = std::max(_band->firstRow, static_cast<int>(std::ceil(std::max(low, -1.0))));
-    int const lastRow = std::min(_band->firstRow + _band->numRows - 1, static_cast<int>(std::floor(std::min(high, 1e9))));
+    int const firstRow =
+        std::max(_band->firstRow, static_cast<int>(std::ceil(std::max(low, -1.0))));
+    int const lastRow = std::min(_band->firstRow + _band->numRows - 1,
+                                 static_cast<int>(std::floor(std::min(high, 1e9))));
     int numTexels = 0;
     for (int row = firstRow; row <= lastRow; ++row) {
         auto const [from, to] = cell.FindColumns(row);
-        int first = std::max(_firstColumn, static_cast<int>(std::ceil(std::clamp(from, -1.0, 1e9))));
+        int first =
+            std::max(_firstColumn, static_cast<int>(std::ceil(std::clamp(from, -1.0, 1e9))));
         int last = std::min(_lastColumn, static_cast<int>(std::floor(std::clamp(to, -1.0, 1e9))));
         int const start = (row - _band->firstRow) * _band->width;
         while (first <= last && IsSettled(start + first)) ++first;
@@ -178,7 +194,8 @@ void UVRaster::RasterCell(TexturePiece const& piece, double x, double y, double 
     if (_rows.empty()) return;
     GatherTargets(piece, numTexels);
     eval::FitInverse(cell.GetModel());
-    eval::InvertTextureMap(cell.GetModel(), _targetX.data(), _targetY.data(), numTexels, _x.data(), _y.data(), _where.data());
+    eval::InvertTextureMap(cell.GetModel(), _targetX.data(), _targetY.data(), numTexels, _x.data(),
+                           _y.data(), _where.data());
     Accept(piece, hits);
 }
 
@@ -217,27 +234,32 @@ void UVRaster::Accept(TexturePiece const& piece, TexelHits& hits) {
         for (int i = 0; i < row.count; ++i) {
             int const end = FindEndOfHits(where, owner, i, row.count);
             if (end > i) {
-                hits.AddRun(texel + i, end - i, [&](int k) { return placeS(x[i + k] + centre); },
-                            [&](int k) { return placeT(y[i + k] + centre); });
+                hits.AddRun(
+                    texel + i, end - i, [&](int k) { return placeS(x[i + k] + centre); },
+                    [&](int k) { return placeT(y[i + k] + centre); });
                 std::fill(owner + i, owner + end, _face);
                 i = end;
                 if (i == row.count) break;
             }
             // Outside, or found from a neighbouring cell or piece before.
-            if (where[i] == eval::Whereabouts::Outside || owner[i] == _face || IsSettled(texel + i)) continue;
+            if (where[i] == eval::Whereabouts::Outside || owner[i] == _face || IsSettled(texel + i))
+                continue;
             double s = x[i] + centre, t = y[i] + centre;
             size_t const target = static_cast<size_t>(row.first + i);
-            if (!IsCovered(piece, texel + i, where[i] != eval::Whereabouts::Unsolved, _targetX[target], _targetY[target], s, t)) continue;
+            if (!IsCovered(piece, texel + i, where[i] != eval::Whereabouts::Unsolved,
+                           _targetX[target], _targetY[target], s, t))
+                continue;
             owner[i] = _face;
-            hits.AddRun(texel + i, 1, [&](int) { return placeS(s); }, [&](int) { return placeT(t); });
+            hits.AddRun(
+                texel + i, 1, [&](int) { return placeS(s); }, [&](int) { return placeT(t); });
         }
     }
 }
 
-/// The cases that are not plain hits: at or outside the domain's edge, claimed by another face, or not
-/// converged. Clamps (s, t) to the domain; true if the texel is to be this face's.
-bool UVRaster::IsCovered(TexturePiece const& piece, int texel, bool isSolved, double targetX, double targetY, double& s,
-                         double& t) {
+/// The cases that are not plain hits: at or outside the domain's edge, claimed by another face, or
+/// not converged. Clamps (s, t) to the domain; true if the texel is to be this face's.
+bool UVRaster::IsCovered(TexturePiece const& piece, int texel, bool isSolved, double targetX,
+                         double targetY, double& s, double& t) {
     double const centre = _tree.GetCentre();
     // The nearest place of the domain.
     double cs = std::clamp(s, 0.0, 1.0), ct = std::clamp(t, 0.0, 1.0);
@@ -259,7 +281,8 @@ bool UVRaster::IsCovered(TexturePiece const& piece, int texel, bool isSolved, do
         if (dx * dx + dy * dy > kCoveredTexels * kCoveredTexels) return false;
     }
     if (_band->owner[texel] >= 0) {
-        double const inside = std::min({cs, ct, _isTriangle ? 1.0 - cs - ct : std::min(1.0 - cs, 1.0 - ct)});
+        double const inside =
+            std::min({cs, ct, _isTriangle ? 1.0 - cs - ct : std::min(1.0 - cs, 1.0 - ct)});
         if (inside > kOverlapParameter && outside == 0.0) _band->overlap[texel] = 1;
         return false;
     }

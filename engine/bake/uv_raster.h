@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -12,8 +13,8 @@
 
 namespace limn::engine {
 
-/// Where the samples of one texture tile lie (bake.md, "From texel to surface point"). The sample of
-/// texel (x, y), y = 0 at the top, is at
+/// Where the samples of one texture tile lie (bake.md, "From texel to surface point"). The sample
+/// of texel (x, y), y = 0 at the top, is at
 ///     u = tileU + (x + offsetX) / width,   v = tileV + 1 - (y + offsetY) / height.
 struct TileGrid {
     int width = 0, height = 0;
@@ -82,8 +83,8 @@ public:
     /// domain. Faces must come in ascending order.
     ///
     /// \param firstColumn, numColumns  the part of the band that is looked at
-    std::vector<TexelHits> const& Rasterise(Index face, TileGrid const& grid, TexelBand& band, int firstColumn,
-                                            int numColumns);
+    std::vector<TexelHits> const& Rasterise(Index face, TileGrid const& grid, TexelBand& band,
+                                            int firstColumn, int numColumns);
     std::vector<TexelHits> const& Rasterise(Index face, TileGrid const& grid, TexelBand& band) {
         return Rasterise(face, grid, band, 0, grid.width);
     }
@@ -99,14 +100,16 @@ public:
 
 private:
     void RasterNode(int node, int depth, TexelHits& hits);
-    void RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain const& domain, TexelHits& hits);
+    void RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain const& domain,
+                     TexelHits& hits);
     void RasterCell(TexturePiece const& piece, double x, double y, double half, TexelHits& hits);
-    /// True if nothing is left to learn of a texel: it has an owner, and is known to be covered twice.
+    /// True if nothing is left to learn of a texel: it has an owner, and is known to be covered
+    /// twice.
     bool IsSettled(int texel) const { return _band->overlap[texel] && _band->owner[texel] >= 0; }
     void GatherTargets(TexturePiece const& piece, int numTexels);
     void Accept(TexturePiece const& piece, TexelHits& hits);
-    bool IsCovered(TexturePiece const& piece, int texel, bool isSolved, double targetX, double targetY, double& s,
-                   double& t);
+    bool IsCovered(TexturePiece const& piece, int texel, bool isSolved, double targetX,
+                   double targetY, double& s, double& t);
 
     eval::FaceTree _tree;
     bool _isTriangle;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <functional>
@@ -52,7 +53,8 @@ public:
     /// Fills the keys all reports have and writes the report where it was asked for.
     void WriteReport();
 
-    /// Says on stderr, as an error, that the run did not reach what was asked. Returns its exit status.
+    /// Says on stderr, as an error, that the run did not reach what was asked. Returns its exit
+    /// status.
     int MissTarget(std::string const& message);
 
     /// \throws Error BadOption  if --report - would mix with data on stdout

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <charconv>
 
 #include <fmt/format.h>
@@ -16,7 +17,8 @@ namespace {
 
 struct Arguments {
     std::vector<std::string> meshes;
-    std::string pattern, size = "2048", compression = "zip", against, fieldPath, space = "object", encode;
+    std::string pattern, size = "2048", compression = "zip", against, fieldPath, space = "object",
+                         encode;
     std::vector<std::string> maps, tiles, groups;
     int samples = 1, padding = 16;
     bool isHalf = false, hasMips = false, hasCoverage = false, hasPreview = false, isVector = false,
@@ -32,7 +34,9 @@ int ParseInteger(std::string const& option, std::string_view text, int low, int 
     int value = 0;
     auto const [stop, code] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (code != std::errc() || stop != text.data() + text.size() || value < low || value > high) {
-        throw Error(ErrorCode::BadOption, fmt::format("{}: '{}' is not a whole number from {} to {}", option, text, low, high));
+        throw Error(
+            ErrorCode::BadOption,
+            fmt::format("{}: '{}' is not a whole number from {} to {}", option, text, low, high));
     }
     return value;
 }
@@ -50,10 +54,12 @@ void ParseSize(std::string const& text, engine::BakeOptions& options) {
 void ParseTiles(std::vector<std::string> const& texts, engine::BakeOptions& options) {
     for (std::string const& text : texts) {
         size_t const dash = text.find('-');
-        int const first = ParseInteger("--tiles", std::string_view(text).substr(0, dash), 1001, 9999);
-        int const last = dash == std::string::npos
-                             ? first
-                             : ParseInteger("--tiles", std::string_view(text).substr(dash + 1), first, 9999);
+        int const first =
+            ParseInteger("--tiles", std::string_view(text).substr(0, dash), 1001, 9999);
+        int const last =
+            dash == std::string::npos
+                ? first
+                : ParseInteger("--tiles", std::string_view(text).substr(dash + 1), first, 9999);
         for (int tile = first; tile <= last; ++tile) options.tiles.push_back(tile);
     }
 }
@@ -69,10 +75,13 @@ engine::BakeOptions MakeOptions(Arguments const& a, CommonOptions const& common)
     options.maps.hasOtherMesh = !a.against.empty();
     if (!a.encode.empty()) {
         size_t const comma = a.encode.find(',');
-        if (comma == std::string::npos) throw Error(ErrorCode::BadOption, "--encode: scale,offset is needed, e.g. 0.5,0.5");
+        if (comma == std::string::npos)
+            throw Error(ErrorCode::BadOption, "--encode: scale,offset is needed, e.g. 0.5,0.5");
         options.maps.hasEncoding = true;
-        options.maps.encodeScale = ParseNumber("--encode", std::string_view(a.encode).substr(0, comma));
-        options.maps.encodeOffset = ParseNumber("--encode", std::string_view(a.encode).substr(comma + 1));
+        options.maps.encodeScale =
+            ParseNumber("--encode", std::string_view(a.encode).substr(0, comma));
+        options.maps.encodeOffset =
+            ParseNumber("--encode", std::string_view(a.encode).substr(comma + 1));
     }
     options.noise = a.noise;
     options.maps.isNormalized = a.isNormalized;
@@ -96,7 +105,9 @@ engine::BakeOptions MakeOptions(Arguments const& a, CommonOptions const& common)
 }
 
 void AddToReport(nlohmann::json& report, engine::BakeReport const& bake) {
-    auto const add = [&](char const* key, size_t value) { report[key] = report.value(key, size_t{0}) + value; };
+    auto const add = [&](char const* key, size_t value) {
+        report[key] = report.value(key, size_t{0}) + value;
+    };
     add("texels_covered", bake.texelsCovered);
     add("overlaps", bake.overlaps);
     add("newton_failures", bake.newtonFailures);
@@ -105,8 +116,9 @@ void AddToReport(nlohmann::json& report, engine::BakeReport const& bake) {
     add("clamped", bake.clamped);
     for (int tile : bake.tiles) report["tiles"].push_back(tile);
     for (auto const& output : bake.outputs) {
-        nlohmann::json entry{{"file", output.path},     {"map", output.map},       {"tile", output.tile},
-                             {"width", output.width},   {"height", output.height}, {"sha256", output.sha256},
+        nlohmann::json entry{{"file", output.path},         {"map", output.map},
+                             {"tile", output.tile},         {"width", output.width},
+                             {"height", output.height},     {"sha256", output.sha256},
                              {"skipped", output.wasSkipped}};
         if (!output.wasSkipped) {
             entry["min"] = output.min;
@@ -120,19 +132,30 @@ nlohmann::json ToJson(engine::AuditReport const& audit, engine::BakeReport const
     nlohmann::json seams = nlohmann::json::array(), components = nlohmann::json::array();
     engine::SeamAudit worst;
     for (auto const& seam : audit.seams) {
-        seams.push_back({{"map", seam.map}, {"samples", seam.samples}, {"max", seam.max}, {"p99", seam.p99}, {"place", seam.place}});
+        seams.push_back({{"map", seam.map},
+                         {"samples", seam.samples},
+                         {"max", seam.max},
+                         {"p99", seam.p99},
+                         {"place", seam.place}});
         if (seam.max >= worst.max) worst = seam;
     }
     for (auto const& c : audit.gaussBonnet) {
-        components.push_back({{"component", c.component}, {"integral", c.integral}, {"texel_sum", c.texelSum},
-                              {"expected", c.expected}, {"relative_error", c.relativeError}, {"audited", c.wasAudited}, {"reason", c.reason}});
+        components.push_back({{"component", c.component},
+                              {"integral", c.integral},
+                              {"texel_sum", c.texelSum},
+                              {"expected", c.expected},
+                              {"relative_error", c.relativeError},
+                              {"audited", c.wasAudited},
+                              {"reason", c.reason}});
     }
     return {{"seam_max", worst.max},
             {"seam_p99", worst.p99},
             {"seam_place", worst.place},
             {"seams", seams},
             {"coverage",
-             {{"texels", bake.texelsCovered}, {"overlaps", bake.overlaps}, {"faces_without_texels", bake.facesWithoutTexels.size()}}},
+             {{"texels", bake.texelsCovered},
+              {"overlaps", bake.overlaps},
+              {"faces_without_texels", bake.facesWithoutTexels.size()}}},
             {"gauss_bonnet", components}};
 }
 
@@ -142,7 +165,8 @@ int Run(Arguments const& a, Context& context) {
         throw Error(ErrorCode::BadOption, "-o: several meshes need {mesh} in the output's name");
     }
     if (a.maps.size() > 1 && a.pattern.find("{map}") == std::string::npos) {
-        context.GetJob().Warn("the output's name has no {map}: all maps go into one file with a layer each");
+        context.GetJob().Warn(
+            "the output's name has no {map}: all maps go into one file with a layer each");
     }
     int status = kDone;
     for (std::string const& path : a.meshes) {
@@ -153,14 +177,16 @@ int Run(Arguments const& a, Context& context) {
         }
         Context::Mesh other;
         if (!a.against.empty()) other = context.Load(a.against);
-        auto const report = engine::Bake(scene, *refiner, a.against.empty() ? nullptr : &other.scene, options,
-                                         context.GetJob());
+        auto const report = engine::Bake(
+            scene, *refiner, a.against.empty() ? nullptr : &other.scene, options, context.GetJob());
         AddToReport(context.GetReport(), report);
         if (!a.hasAudit) continue;
-        auto const audit = engine::Audit(scene, *refiner, options, report, a.auditBound, context.GetJob());
+        auto const audit =
+            engine::Audit(scene, *refiner, options, report, a.auditBound, context.GetJob());
         context.GetReport()["audit"] = ToJson(audit, report);
         if (audit.isWithin) continue;
-        context.GetJob().Warn(fmt::format("{}: the Gauss-Bonnet audit misses its bound {}; the files stay", path, a.auditBound));
+        context.GetJob().Warn(fmt::format(
+            "{}: the Gauss-Bonnet audit misses its bound {}; the files stay", path, a.auditBound));
         status = kNotReached;
     }
     return status;
@@ -170,45 +196,70 @@ int Run(Arguments const& a, Context& context) {
 
 Verb AddBake(CLI::App& app) {
     auto const a = std::make_shared<Arguments>();
-    CLI::App* const verb = app.add_subcommand("bake", "Bake maps of the limit surface into textures");
-    verb->add_option("MESH", a->meshes, "OBJ, PLY or OFF; several with {mesh} in the output's name")->required();
-    verb->add_option("-o,--output", a->pattern, "output path with {map}, {mesh}, <UDIM> or {udim}")->required();
+    CLI::App* const verb =
+        app.add_subcommand("bake", "Bake maps of the limit surface into textures");
+    verb->add_option("MESH", a->meshes, "OBJ, PLY or OFF; several with {mesh} in the output's name")
+        ->required();
+    verb->add_option("-o,--output", a->pattern, "output path with {map}, {mesh}, <UDIM> or {udim}")
+        ->required();
     verb->add_option("--maps", a->maps,
-                     "comma-separated: mean, gaussian, k1, k2, curvedness, shape-index, curvature, principal-direction, "
+                     "comma-separated: mean, gaussian, k1, k2, curvedness, shape-index, curvature, "
+                     "principal-direction, "
                      "position, normal, displacement, stretch, noise, bands, field, primvar:NAME")
         ->delimiter(',')
         ->required();
     verb->add_option("--size", a->size, "texels: N or WxH (default 2048)");
-    verb->add_option("--tiles", a->tiles, "UDIM tiles, e.g. 1001,1003-1005 (default all)")->delimiter(',');
-    verb->add_option("--samples", a->samples, "N x N samples per texel (default 1)")->check(CLI::Range(1, 16));
-    verb->add_option("--padding", a->padding, "texels grown round the charts (default 16)")->check(CLI::Range(0, 4096));
+    verb->add_option("--tiles", a->tiles, "UDIM tiles, e.g. 1001,1003-1005 (default all)")
+        ->delimiter(',');
+    verb->add_option("--samples", a->samples, "N x N samples per texel (default 1)")
+        ->check(CLI::Range(1, 16));
+    verb->add_option("--padding", a->padding, "texels grown round the charts (default 16)")
+        ->check(CLI::Range(0, 4096));
     verb->add_flag("--half", a->isHalf, "16-bit floats (default 32-bit)");
-    verb->add_option("--compression", a->compression, "zip (default), zips, piz, rle, none or dwaa");
+    verb->add_option("--compression", a->compression,
+                     "zip (default), zips, piz, rle, none or dwaa");
     verb->add_flag("--mip", a->hasMips, "mip levels, for renderers");
     verb->add_flag("--coverage", a->hasCoverage, "add a channel 'coverage'");
     verb->add_flag("--preview", a->hasPreview, "also a PNG to look at");
     verb->add_option("--encode", a->encode, "S,O: write value * S + O");
     verb->add_option("--against", a->against, "the mesh that displacement leads to");
-    verb->add_option("--bands", a->numBands, "of the map bands: frequency bands, their smooth base included (default 4)")
+    verb->add_option("--bands", a->numBands,
+                     "of the map bands: frequency bands, their smooth base included (default 4)")
         ->check(CLI::Range(1, 64));
     verb->add_flag("--vector", a->isVector, "displacement and bands as vectors");
-    verb->add_option("--space", a->space, "object (default) or tangent, of vectors; uv: of the map field, flow in texture coordinates")
+    verb->add_option("--space", a->space,
+                     "object (default) or tangent, of vectors; uv: of the map field, flow in "
+                     "texture coordinates")
         ->check(CLI::IsMember({"object", "tangent", "uv"}));
-    verb->add_option("--field", a->fieldPath, "CSV v0,v1,value of MESH's edges, for the map field (limn field -o x.edges.csv)");
-    verb->add_option("--noise-octaves", a->noise.octaves, "levels of refinement with noise each (default 4)")->check(CLI::Range(1, 10));
-    verb->add_option("--noise-frequency", a->noise.frequency,
-                     "noise cells per unit length in the first octave (default: half a cell per mean edge)")
+    verb->add_option(
+        "--field", a->fieldPath,
+        "CSV v0,v1,value of MESH's edges, for the map field (limn field -o x.edges.csv)");
+    verb->add_option("--noise-octaves", a->noise.octaves,
+                     "levels of refinement with noise each (default 4)")
+        ->check(CLI::Range(1, 10));
+    verb->add_option(
+            "--noise-frequency", a->noise.frequency,
+            "noise cells per unit length in the first octave (default: half a cell per mean edge)")
         ->check(CLI::Range(1e-12, 1e12));
-    verb->add_option("--noise-gain", a->noise.gain, "amplitude from octave to octave (default 0.5)")->check(CLI::Range(0.0, 16.0));
+    verb->add_option("--noise-gain", a->noise.gain, "amplitude from octave to octave (default 0.5)")
+        ->check(CLI::Range(0.0, 16.0));
     verb->add_option("--noise-seed", a->noise.seed, "another noise for every number (default 0)");
-    verb->add_option("--noise-ramp", a->noiseRamp, "noise as colours: '#rrggbb,#rrggbb,...' from low to high, equally spaced");
-    verb->add_flag("--normalize", a->isNormalized, "noise from 0 to 1 over the whole surface; fields of length 1");
-    verb->add_flag("--audit", a->hasAudit, "check seams, coverage and Gauss-Bonnet, and report them");
-    verb->add_option("--audit-bound", a->auditBound, "of the Gauss-Bonnet error (default 1e-3); missed: exit status 4");
-    verb->add_option("--groups", a->groups, "only faces of these usemtl, g or o groups")->delimiter(',');
-    verb->add_flag("--skip-existing", a->skipExisting, "leave files of the same input, options and version alone");
-    verb->footer("Example:\n  limn bake scenes/spot/spot.obj -o 'out/spot.{map}.<UDIM>.exr' --maps mean,normal --size 2048 "
-                 "--preview");
+    verb->add_option("--noise-ramp", a->noiseRamp,
+                     "noise as colours: '#rrggbb,#rrggbb,...' from low to high, equally spaced");
+    verb->add_flag("--normalize", a->isNormalized,
+                   "noise from 0 to 1 over the whole surface; fields of length 1");
+    verb->add_flag("--audit", a->hasAudit,
+                   "check seams, coverage and Gauss-Bonnet, and report them");
+    verb->add_option("--audit-bound", a->auditBound,
+                     "of the Gauss-Bonnet error (default 1e-3); missed: exit status 4");
+    verb->add_option("--groups", a->groups, "only faces of these usemtl, g or o groups")
+        ->delimiter(',');
+    verb->add_flag("--skip-existing", a->skipExisting,
+                   "leave files of the same input, options and version alone");
+    verb->footer(
+        "Example:\n  limn bake scenes/spot/spot.obj -o 'out/spot.{map}.<UDIM>.exr' --maps "
+        "mean,normal --size 2048 "
+        "--preview");
     return {verb, [a](Context& context) { return Run(*a, context); }};
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include "engine/cli/filter_options.h"
@@ -12,12 +13,18 @@ Verb AddBands(CLI::App& app) {
         FilterOptions filter;
     };
     auto const a = std::make_shared<Arguments>();
-    CLI::App* const verb = app.add_subcommand("bands", "Split a mesh into frequency bands whose sum is the mesh");
+    CLI::App* const verb =
+        app.add_subcommand("bands", "Split a mesh into frequency bands whose sum is the mesh");
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();
-    verb->add_option("-o,--output", a->prefix, "PREFIX of PREFIX.band0.obj ... and PREFIX.remainder.obj")->required();
-    verb->add_option("--count", a->count, "number of bands, 1 to 1000")->required()->check(CLI::Range(1, 1000));
+    verb->add_option("-o,--output", a->prefix,
+                     "PREFIX of PREFIX.band0.obj ... and PREFIX.remainder.obj")
+        ->required();
+    verb->add_option("--count", a->count, "number of bands, 1 to 1000")
+        ->required()
+        ->check(CLI::Range(1, 1000));
     a->filter.AddTo(*verb);
-    verb->footer("Example:\n  limn bands scenes/spot/spot.obj -o out/spot --count 4 --precision double");
+    verb->footer(
+        "Example:\n  limn bands scenes/spot/spot.obj -o out/spot --count 4 --precision double");
     return {verb, [a](Context& context) {
                 auto const mesh = context.Load(a->mesh);
                 auto bands = engine::SplitIntoBands(mesh.scene, a->filter.Build(mesh), a->count);
@@ -26,7 +33,9 @@ Verb AddBands(CLI::App& app) {
                 engine::MeshSequence files(context.GetCommon().IsDouble());
                 std::vector<std::string> warnings;
                 for (size_t i = 0; i < bands.size(); ++i) {
-                    std::string const path = i + 1 < bands.size() ? fmt::format("{}.band{}.obj", a->prefix, i) : a->prefix + ".remainder.obj";
+                    std::string const path = i + 1 < bands.size()
+                                                 ? fmt::format("{}.band{}.obj", a->prefix, i)
+                                                 : a->prefix + ".remainder.obj";
                     output.positions = std::move(bands[i]);
                     files.Add(path, output, i == 0 ? &warnings : nullptr);
                     auto entry = DescribeExtent(output, mesh);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
@@ -13,12 +14,14 @@ struct Arguments {
     std::string mesh, places, output, frames, evaluator;
 };
 
-void EvaluateFrames(Arguments const& a, engine::Scene const& scene, Far::TopologyRefiner const& refiner,
-                    engine::PlaceList const& places, Context& context) {
+void EvaluateFrames(Arguments const& a, engine::Scene const& scene,
+                    Far::TopologyRefiner const& refiner, engine::PlaceList const& places,
+                    Context& context) {
     CommonOptions const& common = context.GetCommon();
-    engine::FrameOptions const options{a.output, common.IsLeftHanded(), common.IsDouble(), eval::FindEvaluator(a.evaluator)};
-    auto const result = engine::EvaluateFrames(scene, refiner, places, a.places, engine::FindFrames(a.frames), options,
-                                               context.GetJob());
+    engine::FrameOptions const options{a.output, common.IsLeftHanded(), common.IsDouble(),
+                                       eval::FindEvaluator(a.evaluator)};
+    auto const result = engine::EvaluateFrames(
+        scene, refiner, places, a.places, engine::FindFrames(a.frames), options, context.GetJob());
     auto& report = context.GetReport();
     report["places_without_limit"] = result.numWithoutLimit;
     report["places_in_table"] = result.numRows;
@@ -31,20 +34,29 @@ void EvaluateFrames(Arguments const& a, engine::Scene const& scene, Far::Topolog
 
 Verb AddEval(CLI::App& app) {
     auto const a = std::make_shared<Arguments>();
-    CLI::App* const verb = app.add_subcommand("eval", "Evaluate the limit surface at listed places, in double");
+    CLI::App* const verb =
+        app.add_subcommand("eval", "Evaluate the limit surface at listed places, in double");
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();
     verb->add_option("--at", a->places, "CSV with the columns face,s,t")->required();
-    auto* const output = verb->add_option("-o,--output", a->output, "CSV to write (default stdout); with --frames a name with {frame}");
-    auto* const frames = verb->add_option("--frames", a->frames,
-                                          "the same places in every frame: a folder of meshes, or a file name with {frame}; "
-                                          "MESH gives topology and tags")
-                             ->needs(output);
+    auto* const output =
+        verb->add_option("-o,--output", a->output,
+                         "CSV to write (default stdout); with --frames a name with {frame}");
+    auto* const frames =
+        verb->add_option(
+                "--frames", a->frames,
+                "the same places in every frame: a folder of meshes, or a file name with {frame}; "
+                "MESH gives topology and tags")
+            ->needs(output);
     verb->add_option("--evaluator", a->evaluator,
-                     "apply the frames' table in float: simd (limn's), osd-cpu or osd-omp (OpenSubdiv's); default: in double")
+                     "apply the frames' table in float: simd (limn's), osd-cpu or osd-omp "
+                     "(OpenSubdiv's); default: in double")
         ->check(CLI::IsMember({"simd", "osd-cpu", "osd-omp"}))
         ->needs(frames);
-    verb->footer("Example:\n  printf 'face,s,t\\n0,0.5,0.5\\n' > places.csv\n  limn eval scenes/spot/spot.obj --at places.csv\n"
-                 "  limn eval walk.0001.obj --at places.csv --frames 'walk.{frame}.obj' -o 'walk.{frame}.csv'");
+    verb->footer(
+        "Example:\n  printf 'face,s,t\\n0,0.5,0.5\\n' > places.csv\n  limn eval "
+        "scenes/spot/spot.obj --at places.csv\n"
+        "  limn eval walk.0001.obj --at places.csv --frames 'walk.{frame}.obj' -o "
+        "'walk.{frame}.csv'");
     return {verb, [a](Context& context) {
                 context.KeepStdoutForData(a->output.empty());
                 auto const [scene, refiner] = context.Load(a->mesh);
@@ -55,12 +67,14 @@ Verb AddEval(CLI::App& app) {
                     return kDone;
                 }
                 size_t numWithout = 0;
-                std::string const text =
-                    engine::EvaluatePlaces(scene, *refiner, places, a->places, context.GetCommon().IsLeftHanded(),
-                                           context.GetCommon().IsDouble(), numWithout);
+                std::string const text = engine::EvaluatePlaces(
+                    scene, *refiner, places, a->places, context.GetCommon().IsLeftHanded(),
+                    context.GetCommon().IsDouble(), numWithout);
                 context.GetReport()["places_without_limit"] = numWithout;
-                if (a->output.empty()) PrintData(text);
-                else engine::WriteFileAtomically(a->output, text);
+                if (a->output.empty())
+                    PrintData(text);
+                else
+                    engine::WriteFileAtomically(a->output, text);
                 return kDone;
             }};
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
 #include <fmt/format.h>
@@ -29,9 +30,11 @@ engine::FieldStrength ParseStrength(std::string const& text, char const* option,
     size_t const colon = std::min(text.find(':'), text.size());
     double const element = ParseNumber(option, std::string_view(text).substr(0, colon));
     if (element != std::floor(element) || std::abs(element) > 2147483647.0) {
-        throw Error(ErrorCode::BadOption, fmt::format("{} {}: '{}' is no whole number", option, text, text.substr(0, colon)));
+        throw Error(ErrorCode::BadOption, fmt::format("{} {}: '{}' is no whole number", option,
+                                                      text, text.substr(0, colon)));
     }
-    double const strength = colon < text.size() ? ParseNumber(option, std::string_view(text).substr(colon + 1)) : 1.0;
+    double const strength =
+        colon < text.size() ? ParseNumber(option, std::string_view(text).substr(colon + 1)) : 1.0;
     return {static_cast<Index>(element), sign * strength};
 }
 
@@ -45,40 +48,52 @@ std::vector<double> ParseList(std::string const& text, char const* option) {
     return values;
 }
 
-std::vector<eval::WantedVector> ReadWanted(std::string const& path, Far::TopologyLevel const& level) {
-    auto const table = engine::ReadNumberTable(path, {{"face", "x", "y", "z"}, {"vertex", "x", "y", "z"}});
+std::vector<eval::WantedVector> ReadWanted(std::string const& path,
+                                           Far::TopologyLevel const& level) {
+    auto const table =
+        engine::ReadNumberTable(path, {{"face", "x", "y", "z"}, {"vertex", "x", "y", "z"}});
     bool const isFace = table.layout == 0;
     int const count = isFace ? level.GetNumFaces() : level.GetNumVertices();
     std::vector<eval::WantedVector> wanted;
     for (size_t row = 0; row < table.GetNumRows(); ++row) {
-        Index const element = engine::GetIndex(table, path, row, 0, count, isFace ? "face" : "vertex");
-        wanted.push_back({isFace, element, {table.Get(row, 1), table.Get(row, 2), table.Get(row, 3)}});
+        Index const element =
+            engine::GetIndex(table, path, row, 0, count, isFace ? "face" : "vertex");
+        wanted.push_back(
+            {isFace, element, {table.Get(row, 1), table.Get(row, 2), table.Get(row, 3)}});
     }
     return wanted;
 }
 
 engine::FieldOptions MakeOptions(Arguments const& a, Far::TopologyLevel const& level) {
     engine::FieldOptions options;
-    for (auto const& text : a.sources) options.sources.push_back(ParseStrength(text, "--source", 1.0));
+    for (auto const& text : a.sources)
+        options.sources.push_back(ParseStrength(text, "--source", 1.0));
     for (auto const& text : a.sinks) options.sources.push_back(ParseStrength(text, "--sink", -1.0));
-    for (auto const& text : a.vortices) options.vortices.push_back(ParseStrength(text, "--vortex", 1.0));
+    for (auto const& text : a.vortices)
+        options.vortices.push_back(ParseStrength(text, "--vortex", 1.0));
     options.harmonics = ParseList(a.harmonics, "--harmonic");
     if (!a.edgesPath.empty()) options.edges = engine::ReadEdgeValues(a.edgesPath, level);
     if (!a.matchPath.empty()) options.wanted = ReadWanted(a.matchPath, level);
-    if (options.sources.empty() && options.vortices.empty() && options.harmonics.empty() && a.edgesPath.empty() && a.matchPath.empty()) {
-        throw Error(ErrorCode::BadOption, "a field needs at least one of --source, --sink, --vortex, --harmonic, --edges and --match");
+    if (options.sources.empty() && options.vortices.empty() && options.harmonics.empty() &&
+        a.edgesPath.empty() && a.matchPath.empty()) {
+        throw Error(ErrorCode::BadOption,
+                    "a field needs at least one of --source, --sink, --vortex, --harmonic, --edges "
+                    "and --match");
     }
-    options.atBoundary = a.atBoundary == "normal" ? eval::AtBoundary::Normal : eval::AtBoundary::Tangent;
+    options.atBoundary =
+        a.atBoundary == "normal" ? eval::AtBoundary::Normal : eval::AtBoundary::Tangent;
     options.isBalanced = a.isBalanced;
     options.levels = a.levels;
     return options;
 }
 
-std::string FormatVectors(char const* element, std::vector<std::array<double, 3>> const& vectors, bool isDouble) {
+std::string FormatVectors(char const* element, std::vector<std::array<double, 3>> const& vectors,
+                          bool isDouble) {
     std::string text = fmt::format("{},x,y,z\n", element);
     for (size_t i = 0; i < vectors.size(); ++i) {
         auto const& v = vectors[i];
-        fmt::format_to(std::back_inserter(text), "{},{:.{}g},{:.{}g},{:.{}g}\n", i, v[0], isDouble ? 17 : 9, v[1], isDouble ? 17 : 9, v[2], isDouble ? 17 : 9);
+        fmt::format_to(std::back_inserter(text), "{},{:.{}g},{:.{}g},{:.{}g}\n", i, v[0],
+                       isDouble ? 17 : 9, v[1], isDouble ? 17 : 9, v[2], isDouble ? 17 : 9);
     }
     return text;
 }
@@ -90,7 +105,10 @@ Output FindOutput(std::string const& path) {
     if (path.ends_with(".faces.csv")) return Output::Faces;
     std::string const ending = engine::GetEnding(path);
     if (ending == ".obj" || ending == ".ply") return Output::Mesh;
-    throw Error(ErrorCode::BadOption, fmt::format("-o '{}': a field is written as .obj or .ply (and .vectors.csv beside it), .edges.csv or .faces.csv", path));
+    throw Error(ErrorCode::BadOption,
+                fmt::format("-o '{}': a field is written as .obj or .ply (and .vectors.csv beside "
+                            "it), .edges.csv or .faces.csv",
+                            path));
 }
 
 void AddToReport(nlohmann::json& report, engine::FieldAudit const& audit) {
@@ -100,11 +118,15 @@ void AddToReport(nlohmann::json& report, engine::FieldAudit const& audit) {
     report["max_divergence_of_vortex_part"] = audit.maxDivergenceOfVortex;
     report["commutation_d0"] = audit.commutationD0;
     report["commutation_d1"] = audit.commutationD1;
-    report["parts"] = {{"gradient", audit.gradientNorm}, {"vortex", audit.vortexNorm}, {"harmonic", audit.harmonicNorm}};
+    report["parts"] = {{"gradient", audit.gradientNorm},
+                       {"vortex", audit.vortexNorm},
+                       {"harmonic", audit.harmonicNorm}};
     report["generators"] = audit.numGenerators;
     report["solve_seconds"] = audit.solveSeconds;
     auto& list = report["singularities"] = nlohmann::json::array();
-    for (auto const& singularity : audit.indices.singularities) list.push_back({{singularity.isFace ? "face" : "vertex", singularity.element}, {"index", singularity.index}});
+    for (auto const& singularity : audit.indices.singularities)
+        list.push_back({{singularity.isFace ? "face" : "vertex", singularity.element},
+                        {"index", singularity.index}});
 }
 
 int Run(Arguments const& a, Context& context) {
@@ -113,9 +135,12 @@ int Run(Arguments const& a, Context& context) {
     engine::FieldAudit audit;
     auto options = MakeOptions(a, mesh.refiner->GetLevel(0));
     options.hasVertexVectors = output == Output::Mesh || !a.picture.empty();
-    if (output != Output::Mesh && options.hasVertexVectors && a.levels == 0 && !far_ext::HasRefinedFaces(mesh.scene.cage)) {
-        throw Error(ErrorCode::BadOption, "--picture: arrows stand at vertices of a refined mesh, and the output is that of --levels 0; use --levels 1, or "
-                                          "leave --picture out");
+    if (output != Output::Mesh && options.hasVertexVectors && a.levels == 0 &&
+        !far_ext::HasRefinedFaces(mesh.scene.cage)) {
+        throw Error(ErrorCode::BadOption,
+                    "--picture: arrows stand at vertices of a refined mesh, and the output is that "
+                    "of --levels 0; use --levels 1, or "
+                    "leave --picture out");
     }
     auto const field = engine::DesignField(mesh.scene, *mesh.refiner, options, audit);
     AddToReport(context.GetReport(), audit);
@@ -125,13 +150,17 @@ int Run(Arguments const& a, Context& context) {
     engine::MeshSequence files(isDouble);
     if (output == Output::Mesh) {
         files.Add(a.output, field.mesh, &warnings);
-        files.Add(a.output.substr(0, a.output.rfind('.')) + ".vectors.csv", FormatVectors("vertex", field.vectors, isDouble));
+        files.Add(a.output.substr(0, a.output.rfind('.')) + ".vectors.csv",
+                  FormatVectors("vertex", field.vectors, isDouble));
     } else if (output == Output::Edges) {
-        files.Add(a.output, engine::FormatEdgeValues(field.refined->GetLevel(a.levels), field.form));
+        files.Add(a.output,
+                  engine::FormatEdgeValues(field.refined->GetLevel(a.levels), field.form));
     } else {
         files.Add(a.output, FormatVectors("face", field.faceVectors, isDouble));
     }
-    if (!a.picture.empty()) engine::WriteArrowPicture(files.Reserve(a.picture), field.mesh, field.vectors, {{a.view[0], a.view[1], a.view[2]}});
+    if (!a.picture.empty())
+        engine::WriteArrowPicture(files.Reserve(a.picture), field.mesh, field.vectors,
+                                  {{a.view[0], a.view[1], a.view[2]}});
     files.Commit();
     for (std::string const& warning : warnings) context.GetJob().Warn(warning);
     return kDone;
@@ -141,27 +170,48 @@ int Run(Arguments const& a, Context& context) {
 
 Verb AddField(CLI::App& app) {
     auto const a = std::make_shared<Arguments>();
-    CLI::App* const verb = app.add_subcommand("field", "Design a tangent vector field, and subdivide it with the surface");
+    CLI::App* const verb = app.add_subcommand(
+        "field", "Design a tangent vector field, and subdivide it with the surface");
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();
     verb->add_option("-o,--output", a->output,
-                     "x.obj or x.ply: the refined mesh, with x.vectors.csv beside it; x.edges.csv: values along edges; x.faces.csv: a vector per face")
+                     "x.obj or x.ply: the refined mesh, with x.vectors.csv beside it; x.edges.csv: "
+                     "values along edges; x.faces.csv: a vector per face")
         ->required();
-    auto const repeated = [&](char const* name, std::vector<std::string>& values, char const* help) {
-        verb->add_option(name, values, help)->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->type_name("N[:STRENGTH]");
+    auto const repeated = [&](char const* name, std::vector<std::string>& values,
+                              char const* help) {
+        verb->add_option(name, values, help)
+            ->expected(1)
+            ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+            ->type_name("N[:STRENGTH]");
     };
-    repeated("--source", a->sources, "vertex out of which the field flows (repeatable; strength 1)");
+    repeated("--source", a->sources,
+             "vertex out of which the field flows (repeatable; strength 1)");
     repeated("--sink", a->sinks, "vertex into which it flows (repeatable)");
     repeated("--vortex", a->vortices, "face round which it turns, counter-clockwise (repeatable)");
-    verb->add_option("--harmonic", a->harmonics, "c1,c2,...: circulations round handles and holes, one per generator");
-    verb->add_option("--edges", a->edgesPath, "CSV v0,v1,value: a field along edges of MESH, to be added");
-    verb->add_option("--match", a->matchPath, "CSV face,x,y,z or vertex,x,y,z: vectors that the field is to fit");
-    verb->add_option("--levels", a->levels, "refinements (default 0; 1 where faces are not all quads)")->check(CLI::Range(0, 10));
-    verb->add_option("--at-boundary", a->atBoundary, "tangent (default): the field runs along boundaries; normal: into them")
+    verb->add_option("--harmonic", a->harmonics,
+                     "c1,c2,...: circulations round handles and holes, one per generator");
+    verb->add_option("--edges", a->edgesPath,
+                     "CSV v0,v1,value: a field along edges of MESH, to be added");
+    verb->add_option("--match", a->matchPath,
+                     "CSV face,x,y,z or vertex,x,y,z: vectors that the field is to fit");
+    verb->add_option("--levels", a->levels,
+                     "refinements (default 0; 1 where faces are not all quads)")
+        ->check(CLI::Range(0, 10));
+    verb->add_option("--at-boundary", a->atBoundary,
+                     "tangent (default): the field runs along boundaries; normal: into them")
         ->check(CLI::IsMember({"tangent", "normal"}));
-    verb->add_flag("--balance", a->isBalanced, "spread what strengths do not add up to evenly over their component");
-    auto* const picture = verb->add_option("--picture", a->picture, "also write a PNG: arrows along the field, on the mesh");
-    verb->add_option("--view", a->view, "the picture's side that is seen, x,y,z (default 1,0.6,0.8)")->delimiter(',')->expected(3)->needs(picture);
-    verb->footer("Example:\n  limn field scenes/spot/spot.obj -o out/spot.field.obj --levels 2 --source 0 --sink 100 --vortex 40 --vortex 150:-1");
+    verb->add_flag("--balance", a->isBalanced,
+                   "spread what strengths do not add up to evenly over their component");
+    auto* const picture = verb->add_option("--picture", a->picture,
+                                           "also write a PNG: arrows along the field, on the mesh");
+    verb->add_option("--view", a->view,
+                     "the picture's side that is seen, x,y,z (default 1,0.6,0.8)")
+        ->delimiter(',')
+        ->expected(3)
+        ->needs(picture);
+    verb->footer(
+        "Example:\n  limn field scenes/spot/spot.obj -o out/spot.field.obj --levels 2 --source 0 "
+        "--sink 100 --vortex 40 --vortex 150:-1");
     return {verb, [a](Context& context) { return Run(*a, context); }};
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
 #include <fmt/format.h>
@@ -21,10 +22,14 @@ struct Arguments {
 
 eval::SolveMethod ParseMethod(std::string const& name) {
     using Method = eval::SolveMethod;
-    for (Method method : {Method::Automatic, Method::Progressive, Method::Weighted, Method::Chebyshev, Method::ConjugateGradients, Method::Direct}) {
+    for (Method method : {Method::Automatic, Method::Progressive, Method::Weighted,
+                          Method::Chebyshev, Method::ConjugateGradients, Method::Direct}) {
         if (name == GetName(method)) return method;
     }
-    throw Error(ErrorCode::BadOption, fmt::format("--method: '{}' is none of progressive, weighted, chebyshev, cg, direct, auto", name));
+    throw Error(
+        ErrorCode::BadOption,
+        fmt::format("--method: '{}' is none of progressive, weighted, chebyshev, cg, direct, auto",
+                    name));
 }
 
 nlohmann::json ToJson(std::vector<eval::SingularReport> const& components) {
@@ -38,7 +43,8 @@ nlohmann::json ToJson(std::vector<eval::SingularReport> const& components) {
     return list;
 }
 
-void AddToReport(nlohmann::json& report, engine::FitResult const& result, engine::Scene const& scene) {
+void AddToReport(nlohmann::json& report, engine::FitResult const& result,
+                 engine::Scene const& scene) {
     auto const& solve = result.report;
     report["method"] = GetName(solve.method);
     report["iterations"] = solve.iterations;
@@ -47,7 +53,9 @@ void AddToReport(nlohmann::json& report, engine::FitResult const& result, engine
     report["converged"] = result.HasConverged();
     report["lambda_min"] = result.lambdaMin;
     report["singular_components"] = ToJson(solve.singularComponents);
-    report["certificate"] = {{"max", result.certificate.max}, {"rms", result.certificate.rms}, {"worst_vertex", result.certificate.worstVertex}};
+    report["certificate"] = {{"max", result.certificate.max},
+                             {"rms", result.certificate.rms},
+                             {"worst_vertex", result.certificate.worstVertex}};
     report["solve_seconds"] = result.solveSeconds;
     for (size_t i = 0; i < result.primvars.size(); ++i) {
         auto const& primvar = result.primvars[i];
@@ -58,10 +66,13 @@ void AddToReport(nlohmann::json& report, engine::FitResult const& result, engine
     }
 }
 
-constexpr char const* kSingular = "is closed, all its vertices have valence 3 and alternate (like a cube's), so that A is singular";
+constexpr char const* kSingular =
+    "is closed, all its vertices have valence 3 and alternate (like a cube's), so that A is "
+    "singular";
 
 /// Tells of components that were solved by minimum norm.
-void WarnOfSingular(Context& context, std::string const& path, std::vector<eval::SingularReport> const& components) {
+void WarnOfSingular(Context& context, std::string const& path,
+                    std::vector<eval::SingularReport> const& components) {
     size_t numSolved = 0;
     eval::SingularReport const* first = nullptr;
     for (auto const& component : components) {
@@ -70,28 +81,40 @@ void WarnOfSingular(Context& context, std::string const& path, std::vector<eval:
         if (!first) first = &component;
     }
     if (!first) return;
-    std::string const others = numSolved > 1 ? fmt::format(", and so for {} more", numSolved - 1) : "";
-    context.GetJob().Warn(fmt::format("{}: the component of vertex {} ({} vertices) {}; it got the solution of minimum norm{}", path,
-                                      first->firstVertex, first->numVertices, kSingular, others));
+    std::string const others =
+        numSolved > 1 ? fmt::format(", and so for {} more", numSolved - 1) : "";
+    context.GetJob().Warn(fmt::format(
+        "{}: the component of vertex {} ({} vertices) {}; it got the solution of minimum norm{}",
+        path, first->firstVertex, first->numVertices, kSingular, others));
 }
 
 /// Why the tolerance was missed, and what helps, in one line.
 std::string Explain(std::string const& path, engine::FitResult const& result, double tolerance) {
     for (auto const& component : result.report.singularComponents) {
         if (component.isSolved) continue;
-        return fmt::format("{}: the component of vertex {} ({} vertices) {}, and its vertices are {:.2g} of the diagonal off what a limit "
-                           "surface can reach (tolerance {:.2g}); use --alpha 0.5",
-                           path, component.firstVertex, component.numVertices, kSingular, component.defect, tolerance);
+        return fmt::format(
+            "{}: the component of vertex {} ({} vertices) {}, and its vertices are {:.2g} of the "
+            "diagonal off what a limit "
+            "surface can reach (tolerance {:.2g}); use --alpha 0.5",
+            path, component.firstVertex, component.numVertices, kSingular, component.defect,
+            tolerance);
     }
     for (size_t i = 0; i < result.primvars.size(); ++i) {
         if (result.report.converged && !result.primvars[i].converged) {
-            return fmt::format("{}: the primvar '{}' missed the tolerance {:.2g}: {:.2g} after {} applications of A", path,
-                               result.mesh.primvars[i].name, tolerance, result.primvars[i].residual, result.primvars[i].iterations);
+            return fmt::format(
+                "{}: the primvar '{}' missed the tolerance {:.2g}: {:.2g} after {} applications of "
+                "A",
+                path, result.mesh.primvars[i].name, tolerance, result.primvars[i].residual,
+                result.primvars[i].iterations);
         }
     }
-    return fmt::format("{}: the residual is {:.2g} of the diagonal after {} applications of A, worst at vertex {}; the tolerance is {:.2g} and "
-                       "A's smallest eigenvalue about {:.2g}; use --max-iterations, --method direct or --alpha 0.5",
-                       path, result.report.residual, result.report.iterations, result.report.worstVertex, tolerance, result.lambdaMin);
+    return fmt::format(
+        "{}: the residual is {:.2g} of the diagonal after {} applications of A, worst at vertex "
+        "{}; the tolerance is {:.2g} and "
+        "A's smallest eigenvalue about {:.2g}; use --max-iterations, --method direct or --alpha "
+        "0.5",
+        path, result.report.residual, result.report.iterations, result.report.worstVertex,
+        tolerance, result.lambdaMin);
 }
 
 int Run(Arguments const& a, Context& context) {
@@ -99,48 +122,66 @@ int Run(Arguments const& a, Context& context) {
     options.method = ParseMethod(a.method);
     engine::RequireMeshEnding(a.output);
     if (options.keepsTopology && options.alpha == 0.0) {
-        throw Error(ErrorCode::BadOption, "--keep-topology: without --alpha the topology is kept anyway");
+        throw Error(ErrorCode::BadOption,
+                    "--keep-topology: without --alpha the topology is kept anyway");
     }
     auto mesh = context.Load(a.mesh);
     if (a.level > 0) mesh.scene = engine::RefineUniformly(mesh.scene, a.level, false);
     engine::FitResult const result = engine::FitToLimit(mesh.scene, options);
     AddToReport(context.GetReport(), result, mesh.scene);
     WarnOfSingular(context, a.mesh, result.report.singularComponents);
-    if (!result.HasConverged() && !a.keepsResult) return context.MissTarget(Explain(a.mesh, result, options.tolerance));
+    if (!result.HasConverged() && !a.keepsResult)
+        return context.MissTarget(Explain(a.mesh, result, options.tolerance));
 
     if (options.keepsTopology) {
-        context.GetJob().Warn(fmt::format("{}: its limit passes through the data only if the first step is taken with alpha {}, which no other "
-                                          "program does",
-                                          a.output, options.alpha));
+        context.GetJob().Warn(
+            fmt::format("{}: its limit passes through the data only if the first step is taken "
+                        "with alpha {}, which no other "
+                        "program does",
+                        a.output, options.alpha));
     }
     bool const isDouble = context.GetCommon().IsDouble();
     if (!isDouble && options.tolerance < 1e-7) {
-        context.GetJob().Warn(fmt::format("{}: floats keep 6e-8 of a coordinate; use --precision double for a tolerance of {:.2g}",
-                                          a.output, options.tolerance));
+        context.GetJob().Warn(
+            fmt::format("{}: floats keep 6e-8 of a coordinate; use --precision double for a "
+                        "tolerance of {:.2g}",
+                        a.output, options.tolerance));
     }
     std::vector<std::string> warnings;
     engine::WriteMesh(a.output, result.mesh, isDouble, &warnings);
     for (std::string const& warning : warnings) context.GetJob().Warn(warning);
-    return result.HasConverged() ? kDone : context.MissTarget(Explain(a.mesh, result, options.tolerance));
+    return result.HasConverged() ? kDone
+                                 : context.MissTarget(Explain(a.mesh, result, options.tolerance));
 }
 
 }  // namespace
 
 Verb AddFit(CLI::App& app) {
     auto const a = std::make_shared<Arguments>();
-    CLI::App* const verb = app.add_subcommand("fit", "Find the control mesh whose limit surface passes through a mesh's vertices");
+    CLI::App* const verb = app.add_subcommand(
+        "fit", "Find the control mesh whose limit surface passes through a mesh's vertices");
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();
     verb->add_option("-o,--output", a->output, "mesh to write, .obj or .ply")->required();
-    verb->add_option("--tolerance", a->options.tolerance, "of the largest miss, over the diagonal of the bounding box (default 1e-6)")
+    verb->add_option("--tolerance", a->options.tolerance,
+                     "of the largest miss, over the diagonal of the bounding box (default 1e-6)")
         ->check(CLI::Range(1e-15, 1.0));
-    verb->add_option("--method", a->method, "progressive, weighted, chebyshev, cg, direct, or auto (default): the fastest that converges");
-    verb->add_option("--max-iterations", a->options.maxIterations, "applications of the limit matrix (default 1000)")
+    verb->add_option("--method", a->method,
+                     "progressive, weighted, chebyshev, cg, direct, or auto (default): the fastest "
+                     "that converges");
+    verb->add_option("--max-iterations", a->options.maxIterations,
+                     "applications of the limit matrix (default 1000)")
         ->check(CLI::Range(1, 100000000));
-    verb->add_option("--alpha", a->options.alpha, "generalised Catmull-Clark in the first step, 0 (default) to 1; the result is one level finer")
+    verb->add_option("--alpha", a->options.alpha,
+                     "generalised Catmull-Clark in the first step, 0 (default) to 1; the result is "
+                     "one level finer")
         ->check(CLI::Range(0.0, 1.0));
-    verb->add_flag("--keep-topology", a->options.keepsTopology, "with --alpha: write the control mesh before that step");
-    verb->add_option("--at-level", a->level, "refine the mesh so often first, and fit the refined points (default 0)")->check(CLI::Range(0, 10));
-    verb->add_flag("--keep-result", a->keepsResult, "write the result even where it misses the tolerance (exit status 4)");
+    verb->add_flag("--keep-topology", a->options.keepsTopology,
+                   "with --alpha: write the control mesh before that step");
+    verb->add_option("--at-level", a->level,
+                     "refine the mesh so often first, and fit the refined points (default 0)")
+        ->check(CLI::Range(0, 10));
+    verb->add_flag("--keep-result", a->keepsResult,
+                   "write the result even where it misses the tolerance (exit status 4)");
     verb->footer("Example:\n  limn fit scenes/spot/spot.obj -o out/spot.fit.obj --report -");
     return {verb, [a](Context& context) { return Run(*a, context); }};
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -14,7 +15,10 @@ nlohmann::json ToJson(engine::MeshInfo const& info, far_ext::ControlMesh const& 
     for (auto const& [size, count] : info.facesBySize) bySize[std::to_string(size)] = count;
     nlohmann::json defects = nlohmann::json::array();
     for (auto const& defect : info.defects) {
-        defects.push_back({{"kind", defect.kind}, {"element", defect.element}, {"line", defect.line}, {"message", defect.message}});
+        defects.push_back({{"kind", defect.kind},
+                           {"element", defect.element},
+                           {"line", defect.line},
+                           {"message", defect.message}});
     }
     auto const& options = cage.options;
     return {{"vertices", info.vertices},
@@ -48,29 +52,39 @@ nlohmann::json ToJson(engine::MeshInfo const& info, far_ext::ControlMesh const& 
 
 std::string ToText(engine::Scene const& scene, engine::MeshInfo const& info) {
     std::string text = fmt::format("{}\n", scene.path);
-    auto const line = [&](char const* what, std::string const& value) { text += fmt::format("  {:<14} {}\n", what, value); };
+    auto const line = [&](char const* what, std::string const& value) {
+        text += fmt::format("  {:<14} {}\n", what, value);
+    };
     std::string sizes;
     for (auto const& [size, count] : info.facesBySize) {
         char const* const name = size == 3 ? "triangles" : size == 4 ? "quads" : nullptr;
-        sizes += fmt::format("{}{} {}", sizes.empty() ? "" : ", ", count, name ? name : fmt::format("{}-gons", size));
+        sizes += fmt::format("{}{} {}", sizes.empty() ? "" : ", ", count,
+                             name ? name : fmt::format("{}-gons", size));
     }
-    line("topology", fmt::format("{} vertices, {} edges, {} faces ({})", info.vertices, info.edges, info.faces, sizes));
-    line("surface", fmt::format("{} component{}, {} boundary loop{}, Euler characteristic {}, genus {}", info.components,
-                                info.components == 1 ? "" : "s", info.boundaryLoops, info.boundaryLoops == 1 ? "" : "s",
-                                info.eulerCharacteristic, info.genus < 0 ? "undefined" : std::to_string(info.genus)));
+    line("topology", fmt::format("{} vertices, {} edges, {} faces ({})", info.vertices, info.edges,
+                                 info.faces, sizes));
+    line("surface",
+         fmt::format("{} component{}, {} boundary loop{}, Euler characteristic {}, genus {}",
+                     info.components, info.components == 1 ? "" : "s", info.boundaryLoops,
+                     info.boundaryLoops == 1 ? "" : "s", info.eulerCharacteristic,
+                     info.genus < 0 ? "undefined" : std::to_string(info.genus)));
     line("valence", fmt::format("{} to {}", info.minValence, info.maxValence));
-    line("tags", fmt::format("{} crease edges, {} corners, {} holes", info.creases, info.corners, info.holes));
+    line("tags", fmt::format("{} crease edges, {} corners, {} holes", info.creases, info.corners,
+                             info.holes));
     line("options", engine::DescribeSubdivision(scene.cage));
     if (!info.groups.empty()) line("groups", fmt::format("{}", fmt::join(info.groups, ", ")));
     std::string primvars;
-    for (auto const& primvar : scene.primvars) primvars += (primvars.empty() ? "" : ", ") + primvar.name;
+    for (auto const& primvar : scene.primvars)
+        primvars += (primvars.empty() ? "" : ", ") + primvar.name;
     if (!primvars.empty()) line("primvars", primvars);
     if (!info.uv.present) {
         line("UVs", "none");
     } else {
-        line("UVs", fmt::format("tiles {}; faces: {} overlapping, {} flipped, {} without area, {} out of range",
-                                fmt::join(info.uv.tiles, ", "), info.uv.overlapFaces, info.uv.flippedFaces,
-                                info.uv.zeroAreaFaces, info.uv.outOfRangeFaces));
+        line("UVs",
+             fmt::format(
+                 "tiles {}; faces: {} overlapping, {} flipped, {} without area, {} out of range",
+                 fmt::join(info.uv.tiles, ", "), info.uv.overlapFaces, info.uv.flippedFaces,
+                 info.uv.zeroAreaFaces, info.uv.outOfRangeFaces));
     }
     for (auto const& defect : info.defects) line("defect", defect.message);
     return text;
@@ -93,7 +107,10 @@ Verb AddInfo(CLI::App& app) {
                 auto const [scene, refiner] = context.Load(a->mesh, Context::Defects::Keep);
                 auto const info = engine::DescribeMesh(scene, refiner->GetLevel(0));
                 auto json = ToJson(info, scene.cage);
-                std::string const text = a->asJson ? json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n" : ToText(scene, info);
+                std::string const text =
+                    a->asJson
+                        ? json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"
+                        : ToText(scene, info);
                 PrintData(text);
                 context.GetReport().update(json);
                 return kDone;

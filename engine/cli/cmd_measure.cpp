@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
@@ -17,7 +18,10 @@ struct MeasureArguments {
 };
 
 nlohmann::json ToJson(engine::CurvatureStatistics const& statistics) {
-    return {{"min", statistics.min}, {"max", statistics.max}, {"mean", statistics.mean}, {"stddev", statistics.stddev}};
+    return {{"min", statistics.min},
+            {"max", statistics.max},
+            {"mean", statistics.mean},
+            {"stddev", statistics.stddev}};
 }
 
 nlohmann::json ToJson(engine::Measurement const& found) {
@@ -45,10 +49,12 @@ nlohmann::json ToJson(engine::Measurement const& found) {
 int RunMeasure(MeasureArguments const& a, Context& context) {
     context.KeepStdoutForData(true);
     if (a.prefix.empty() && (a.hasHighlight || a.hasPicture)) {
-        throw Error(ErrorCode::BadOption, "--highlight and --picture write files; name their beginning with -o");
+        throw Error(ErrorCode::BadOption,
+                    "--highlight and --picture write files; name their beginning with -o");
     }
     auto const [scene, refiner] = context.Load(a.mesh);
-    auto const surface = a.surface == "mesh" ? engine::MeasuredSurface::Mesh : engine::MeasuredSurface::Limit;
+    auto const surface =
+        a.surface == "mesh" ? engine::MeasuredSurface::Mesh : engine::MeasuredSurface::Limit;
     double const orientation = context.GetCommon().IsLeftHanded() ? -1.0 : 1.0;
     auto const json = ToJson(engine::Measure(scene, *refiner, surface, orientation));
     if (!a.prefix.empty()) {
@@ -69,14 +75,20 @@ int RunMeasure(MeasureArguments const& a, Context& context) {
 
 Verb AddMeasure(CLI::App& app) {
     auto const a = std::make_shared<MeasureArguments>();
-    CLI::App* const verb = app.add_subcommand("measure", "Area, volume, energies and curvature of a surface");
+    CLI::App* const verb =
+        app.add_subcommand("measure", "Area, volume, energies and curvature of a surface");
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();
-    verb->add_option("-o,--output", a->prefix, "write PREFIX.ply with mean, gaussian, k1 and k2 per vertex");
-    verb->add_option("--surface", a->surface, "limit (default): exact curvature of the limit; mesh: of the mesh itself")
+    verb->add_option("-o,--output", a->prefix,
+                     "write PREFIX.ply with mean, gaussian, k1 and k2 per vertex");
+    verb->add_option("--surface", a->surface,
+                     "limit (default): exact curvature of the limit; mesh: of the mesh itself")
         ->check(CLI::IsMember({"limit", "mesh"}));
-    verb->add_flag("--highlight", a->hasHighlight, "also write PREFIX.highlight.png: highlight lines of the mesh");
-    verb->add_flag("--picture", a->hasPicture, "also write PREFIX.mean.png: the mesh in colours of mean curvature");
-    verb->add_option("--view", a->view, "pictures: the side that is seen, x,y,z (default 1,0.6,0.8)")
+    verb->add_flag("--highlight", a->hasHighlight,
+                   "also write PREFIX.highlight.png: highlight lines of the mesh");
+    verb->add_flag("--picture", a->hasPicture,
+                   "also write PREFIX.mean.png: the mesh in colours of mean curvature");
+    verb->add_option("--view", a->view,
+                     "pictures: the side that is seen, x,y,z (default 1,0.6,0.8)")
         ->delimiter(',')
         ->expected(3);
     verb->footer("Example:\n  limn measure scenes/spot/spot.obj -o out/spot --highlight");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
 #include "engine/cli/filter_options.h"
@@ -13,14 +14,19 @@ Verb AddMorph(CLI::App& app) {
         FilterOptions filter;
     };
     auto const a = std::make_shared<Arguments>();
-    CLI::App* const verb = app.add_subcommand("morph", "Make the meshes in between two meshes of the same topology");
+    CLI::App* const verb =
+        app.add_subcommand("morph", "Make the meshes in between two meshes of the same topology");
     verb->add_option("FROM", a->from, "OBJ, PLY or OFF")->required();
-    verb->add_option("TO", a->to, "the same faces; its tags and UVs are those of the result")->required();
+    verb->add_option("TO", a->to, "the same faces; its tags and UVs are those of the result")
+        ->required();
     verb->add_option("-o,--output", a->prefix, "PREFIX of PREFIX.0001.obj ...")->required();
-    verb->add_option("--detail", a->detail, "the last band of the difference to keep (default 2)")->check(CLI::Range(0, 1000));
-    verb->add_option("--rate", a->rate, "share of the difference that a step keeps, above 0 and below 1 (default 0.8)")
+    verb->add_option("--detail", a->detail, "the last band of the difference to keep (default 2)")
+        ->check(CLI::Range(0, 1000));
+    verb->add_option("--rate", a->rate,
+                     "share of the difference that a step keeps, above 0 and below 1 (default 0.8)")
         ->check(CLI::Range(1e-6, 1.0 - 1e-6));
-    verb->add_option("--steps", a->steps, "number of meshes (default 10)")->check(CLI::Range(1, 9999));
+    verb->add_option("--steps", a->steps, "number of meshes (default 10)")
+        ->check(CLI::Range(1, 9999));
     a->filter.AddTo(*verb);
     verb->footer("Example:\n  limn morph neutral.obj smile.obj -o out/smile --steps 12");
     return {verb, [a](Context& context) {
@@ -30,14 +36,16 @@ Verb AddMorph(CLI::App& app) {
                 engine::Scene output = to.scene;
                 engine::MeshSequence files(context.GetCommon().IsDouble());
                 std::vector<std::string> warnings;
-                engine::Morph(from.scene, to.scene, A, a->detail, a->rate, a->steps, [&](int step, std::vector<double> const& positions) {
-                    std::string const path = fmt::format("{}.{:04}.obj", a->prefix, step);
-                    output.positions = positions;
-                    files.Add(path, output, step == 1 ? &warnings : nullptr);
-                    auto entry = DescribeExtent(output, to);
-                    entry["file"] = path;
-                    context.GetReport()["outputs"].push_back(std::move(entry));
-                });
+                engine::Morph(from.scene, to.scene, A, a->detail, a->rate, a->steps,
+                              [&](int step, std::vector<double> const& positions) {
+                                  std::string const path =
+                                      fmt::format("{}.{:04}.obj", a->prefix, step);
+                                  output.positions = positions;
+                                  files.Add(path, output, step == 1 ? &warnings : nullptr);
+                                  auto entry = DescribeExtent(output, to);
+                                  entry["file"] = path;
+                                  context.GetReport()["outputs"].push_back(std::move(entry));
+                              });
                 context.GetReport()["after"] = DescribeExtent(output, to);
                 files.Commit();
                 WarnAll(context, warnings);

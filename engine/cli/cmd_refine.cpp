@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <chrono>
 
@@ -6,10 +7,10 @@
 #include "engine/cli/cli.h"
 #include "engine/differential/differential.h"
 #include "engine/differential/edit_reader.h"
-#include "engine/io/mesh_writer.h"
 #include "engine/differential/polyline_file.h"
-#include "engine/scene/subdivision_names.h"
+#include "engine/io/mesh_writer.h"
 #include "engine/scene/refine.h"
+#include "engine/scene/subdivision_names.h"
 #include "far_ext/error.h"
 
 namespace limn::cli {
@@ -19,11 +20,13 @@ namespace {
 using far_ext::SubdivisionRule;
 
 /// Options that only meshes in differential space have.
-constexpr char const* kDifferentialOptions[] = {"--laplacian", "--dirmag", "--spatial-first", "--handle",
-                                                "--solver",    "--edit",   "--keep-result"};
+constexpr char const* kDifferentialOptions[] = {"--laplacian",  "--dirmag", "--spatial-first",
+                                                "--handle",     "--solver", "--edit",
+                                                "--keep-result"};
 
 struct RefineArguments {
-    std::string mesh, output, space = "spatial", laplacian = "combinatorial", solver = "multigrid", editPath;
+    std::string mesh, output, space = "spatial", laplacian = "combinatorial", solver = "multigrid",
+                              editPath;
     std::optional<std::string> rule;
     int levels = 1, dirMagLevels = 0, spatialLevels = 0;
     std::vector<int> handles;
@@ -33,18 +36,21 @@ struct RefineArguments {
 };
 
 /// The scheme follows the rule where one is named.
-SubdivisionRule ChooseRule(RefineArguments const& a, CommonOptions const& common, far_ext::ControlMesh& cage) {
+SubdivisionRule ChooseRule(RefineArguments const& a, CommonOptions const& common,
+                           far_ext::ControlMesh& cage) {
     if (!a.rule) return SubdivisionRule::Scheme;
     auto const scheme = *a.rule == "catmark" ? Sdc::SCHEME_CATMARK : Sdc::SCHEME_LOOP;
     if (common.scheme && scheme != cage.scheme) {
-        throw Error(ErrorCode::BadOption, fmt::format("--rule {} contradicts --scheme {}", *a.rule, *common.scheme));
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("--rule {} contradicts --scheme {}", *a.rule, *common.scheme));
     }
     cage.scheme = scheme;
     far_ext::Validate(cage);  // triangles only, where the rule asks for them
     return *a.rule == "butterfly" ? SubdivisionRule::Butterfly : SubdivisionRule::Scheme;
 }
 
-engine::DifferentialOptions MakeOptions(RefineArguments const& a, SubdivisionRule rule, bool isDouble) {
+engine::DifferentialOptions MakeOptions(RefineArguments const& a, SubdivisionRule rule,
+                                        bool isDouble) {
     engine::DifferentialOptions options;
     options.rule = rule;
     if (a.laplacian == "cotangent") options.laplacian = engine::Laplacian::Cotangent;
@@ -53,17 +59,19 @@ engine::DifferentialOptions MakeOptions(RefineArguments const& a, SubdivisionRul
     options.spatialLevels = a.spatialLevels;
     options.handles.assign(a.handles.begin(), a.handles.end());
     options.usesCholesky = a.solver == "cholesky";
-    options.tolerance = isDouble ? 1e-12 : 1e-8;  // what is written should be right to its last digits
+    options.tolerance =
+        isDouble ? 1e-12 : 1e-8;  // what is written should be right to its last digits
     if (!a.editPath.empty()) options.edit = engine::ReadCurvatureEdit(a.editPath);
     return options;
 }
 
 /// \return false where the solver missed its tolerance
-bool RefineDifferentially(RefineArguments const& a, Context& context, SubdivisionRule rule, engine::Scene const& scene,
-                          engine::Scene& fine) {
+bool RefineDifferentially(RefineArguments const& a, Context& context, SubdivisionRule rule,
+                          engine::Scene const& scene, engine::Scene& fine) {
     auto const options = MakeOptions(a, rule, context.GetCommon().IsDouble());
     engine::DifferentialReport found;
-    fine = engine::RefineDifferentially(scene, a.levels, options, context.GetCommon().IsLeftHanded() ? -1.0 : 1.0, found);
+    fine = engine::RefineDifferentially(scene, a.levels, options,
+                                        context.GetCommon().IsLeftHanded() ? -1.0 : 1.0, found);
     for (std::string const& warning : found.warnings) context.GetJob().Warn(warning);
     auto& report = context.GetReport();
     report["unknowns"] = found.unknowns;
@@ -77,8 +85,9 @@ bool RefineDifferentially(RefineArguments const& a, Context& context, Subdivisio
     report["thin_plate_energy"] = found.energy.mean;
     report["thin_plate_energy_area"] = found.energy.integral;
     if (!found.converged) {
-        context.GetJob().Warn(fmt::format("the solver stopped at residual {:.1e} after {} iterations{}", found.residual,
-                                          found.iterations, a.keepsResult ? "" : "; nothing is written without --keep-result"));
+        context.GetJob().Warn(fmt::format(
+            "the solver stopped at residual {:.1e} after {} iterations{}", found.residual,
+            found.iterations, a.keepsResult ? "" : "; nothing is written without --keep-result"));
     }
     return found.converged;
 }
@@ -86,23 +95,29 @@ bool RefineDifferentially(RefineArguments const& a, Context& context, Subdivisio
 void CheckSpace(RefineArguments const& a, CLI::App const& verb) {
     if (a.IsDifferential()) {
         if (a.toLimit) {
-            throw Error(ErrorCode::BadOption, "--limit: the limit of --space differential has no closed form; leave it out");
+            throw Error(
+                ErrorCode::BadOption,
+                "--limit: the limit of --space differential has no closed form; leave it out");
         }
         return;
     }
     for (char const* name : kDifferentialOptions) {
-        if (verb.count(name)) throw Error(ErrorCode::BadOption, fmt::format("{} needs --space differential", name));
+        if (verb.count(name))
+            throw Error(ErrorCode::BadOption, fmt::format("{} needs --space differential", name));
     }
 }
 
 /// Polylines by the rule that boundaries follow: cubic B-spline, or four-point for butterfly.
 int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& context) {
     auto const refuse = [&](char const* name) {
-        if (verb.count(name)) throw Error(ErrorCode::BadOption, fmt::format("{} means nothing with --curve; leave it out", name));
+        if (verb.count(name))
+            throw Error(ErrorCode::BadOption,
+                        fmt::format("{} means nothing with --curve; leave it out", name));
     };
     std::for_each(std::begin(kDifferentialOptions), std::end(kDifferentialOptions), refuse);
     refuse("--limit");
-    auto const rule = a.rule == "butterfly" ? eval::CurveRule::FourPoint : eval::CurveRule::CubicBSpline;
+    auto const rule =
+        a.rule == "butterfly" ? eval::CurveRule::FourPoint : eval::CurveRule::CubicBSpline;
     auto curves = engine::ReadPolylines(a.mesh);
     eval::CurveReport worst;
     size_t numPoints = 0;
@@ -112,16 +127,19 @@ int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& contex
             eval::CurveReport report;
             curve = eval::RefineCurveDifferentially(curve, rule, a.levels, &report);
             worst.residual = std::max(worst.residual, report.residual);
-            worst.compatibilityDefect = std::max(worst.compatibilityDefect, report.compatibilityDefect);
+            worst.compatibilityDefect =
+                std::max(worst.compatibilityDefect, report.compatibilityDefect);
         } else {
-            for (int level = 0; level < a.levels; ++level) curve = eval::SubdivideCurve(curve, rule);
+            for (int level = 0; level < a.levels; ++level)
+                curve = eval::SubdivideCurve(curve, rule);
         }
         numPoints += curve.points.size();
     }
     std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - start;
     engine::WritePolylines(a.output, curves, context.GetCommon().IsDouble());
     auto& report = context.GetReport();
-    report["inputs"].push_back({{"path", a.mesh}, {"sha256", engine::Sha256OfFile(a.mesh)}, {"curves", curves.size()}});
+    report["inputs"].push_back(
+        {{"path", a.mesh}, {"sha256", engine::Sha256OfFile(a.mesh)}, {"curves", curves.size()}});
     report["vertices"] = report["unknowns"] = numPoints;
     report["solve_seconds"] = elapsed.count();
     report["residual"] = worst.residual;
@@ -137,8 +155,10 @@ int RunRefine(RefineArguments const& a, CLI::App const& verb, Context& context) 
     context.GetReport()["inputs"].back()["subdivision"] = engine::DescribeSubdivision(scene.cage);
     engine::Scene fine;
     bool isDone = true;
-    if (a.IsDifferential()) isDone = RefineDifferentially(a, context, rule, scene, fine);
-    else fine = engine::RefineUniformly(scene, a.levels, a.toLimit, rule);
+    if (a.IsDifferential())
+        isDone = RefineDifferentially(a, context, rule, scene, fine);
+    else
+        fine = engine::RefineUniformly(scene, a.levels, a.toLimit, rule);
     if (isDone || a.keepsResult) {
         std::vector<std::string> warnings;
         engine::WriteMesh(a.output, fine, context.GetCommon().IsDouble(), &warnings);
@@ -157,26 +177,40 @@ Verb AddRefine(CLI::App& app) {
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();
     verb->add_option("-o,--output", a->output, "mesh to write, .obj or .ply")->required();
     verb->add_option("--levels", a->levels, "how often (default 1)")->check(CLI::Range(0, 10));
-    verb->add_option("--space", a->space, "spatial (default): rules on positions; differential: on mean-curvature normals")
+    verb->add_option(
+            "--space", a->space,
+            "spatial (default): rules on positions; differential: on mean-curvature normals")
         ->check(CLI::IsMember({"spatial", "differential"}));
     verb->add_option("--rule", a->rule, "loop, catmark or butterfly (default: the scheme's)")
         ->check(CLI::IsMember({"loop", "catmark", "butterfly"}));
     verb->add_flag("--limit", a->toLimit, "move the result's vertices to the limit surface");
-    verb->add_flag("--curve", a->isCurve,
-                   "MESH holds polylines (OBJ 'l'); their rule is cubic B-spline, for butterfly four-point");
-    auto const differential = [](CLI::Option* option) { return option->group("Options of --space differential"); };
-    differential(verb->add_option("--laplacian", a->laplacian, "combinatorial (default), cotangent or mesh"))
+    verb->add_flag(
+        "--curve", a->isCurve,
+        "MESH holds polylines (OBJ 'l'); their rule is cubic B-spline, for butterfly four-point");
+    auto const differential = [](CLI::Option* option) {
+        return option->group("Options of --space differential");
+    };
+    differential(
+        verb->add_option("--laplacian", a->laplacian, "combinatorial (default), cotangent or mesh"))
         ->check(CLI::IsMember({"combinatorial", "cotangent", "mesh"}));
-    differential(verb->add_option("--dirmag", a->dirMagLevels, "first levels done by direction and magnitude (default 0)"))
+    differential(verb->add_option("--dirmag", a->dirMagLevels,
+                                  "first levels done by direction and magnitude (default 0)"))
         ->check(CLI::Range(0, 10));
-    differential(verb->add_option("--spatial-first", a->spatialLevels, "levels done in space before (default 0)"))
+    differential(verb->add_option("--spatial-first", a->spatialLevels,
+                                  "levels done in space before (default 0)"))
         ->check(CLI::Range(0, 10));
-    differential(verb->add_option("--handle", a->handles, "vertex that stays: one per component or boundary loop (repeatable)"));
+    differential(
+        verb->add_option("--handle", a->handles,
+                         "vertex that stays: one per component or boundary loop (repeatable)"));
     differential(verb->add_option("--solver", a->solver, "multigrid (default) or cholesky"))
         ->check(CLI::IsMember({"multigrid", "cholesky"}));
-    differential(verb->add_option("--edit", a->editPath, "JSON: curvature factors, rotations, filter"));
-    differential(verb->add_flag("--keep-result", a->keepsResult, "write what a solver that missed its tolerance has"));
-    verb->footer("Example:\n  limn refine scenes/spot/spot.obj -o out/spot.2.obj --levels 2 --space differential");
+    differential(
+        verb->add_option("--edit", a->editPath, "JSON: curvature factors, rotations, filter"));
+    differential(verb->add_flag("--keep-result", a->keepsResult,
+                                "write what a solver that missed its tolerance has"));
+    verb->footer(
+        "Example:\n  limn refine scenes/spot/spot.obj -o out/spot.2.obj --levels 2 --space "
+        "differential");
     return {verb, [a, verb](Context& context) { return RunRefine(*a, *verb, context); }};
 }
 

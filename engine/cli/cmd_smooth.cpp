@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,15 +10,16 @@
 #include "engine/measure/mesh_picture.h"
 #include "engine/scene/subdivision_names.h"
 #include "engine/smooth/smooth.h"
-#include "far_ext/error.h"
 #include "far_ext/differential/laplacian.h"
+#include "far_ext/error.h"
 
 namespace limn::cli {
 
 namespace {
 
 struct Arguments {
-    std::string mesh, output, widthMap, widthEdges, widthTexture, refinement = "quadrisect", solver = "cg", boundary = "fixed", picture;
+    std::string mesh, output, widthMap, widthEdges, widthTexture,
+        refinement = "quadrisect", solver = "cg", boundary = "fixed", picture;
     std::vector<double> view{1.0, 0.6, 0.8};
     double width = 0.0, widthFactor = 0.12, widthScale = 0.12;
     bool isLocal = false;
@@ -29,7 +31,9 @@ void Refuse(CLI::App const& verb, std::vector<char const*> const& names) {
     char const* first = nullptr;
     for (char const* name : names) {
         if (verb.count(name) == 0) continue;
-        if (first) throw Error(ErrorCode::BadOption, fmt::format("{} and {} exclude each other", first, name));
+        if (first)
+            throw Error(ErrorCode::BadOption,
+                        fmt::format("{} and {} exclude each other", first, name));
         first = name;
     }
 }
@@ -41,23 +45,35 @@ void CheckOptions(Arguments const& a, CLI::App const& verb) {
     for (char const* other : {"--local", "--width-map", "--width-edges"}) {
         for (char const* name : {"--width", "--width-factor"}) Refuse(verb, {other, name});
     }
-    if (verb.count("--width-scale") && !a.isLocal) throw Error(ErrorCode::BadOption, "--width-scale needs --local");
+    if (verb.count("--width-scale") && !a.isLocal)
+        throw Error(ErrorCode::BadOption, "--width-scale needs --local");
     Refuse(verb, {"--sweeps", "--iterations", "--tolerance"});
-    if (std::isnan(a.options.tolerance)) throw Error(ErrorCode::BadOption, "--tolerance: give a number from 1e-14 to 1");
-    if (a.solver != "cg" && verb.count("--tolerance")) throw Error(ErrorCode::BadOption, fmt::format("--tolerance is for --solver cg, not {}", a.solver));
+    if (std::isnan(a.options.tolerance))
+        throw Error(ErrorCode::BadOption, "--tolerance: give a number from 1e-14 to 1");
+    if (a.solver != "cg" && verb.count("--tolerance"))
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("--tolerance is for --solver cg, not {}", a.solver));
     if (a.solver == "exact") {
         for (char const* name : {"--sweeps", "--iterations"}) {
-            if (verb.count(name)) throw Error(ErrorCode::BadOption, fmt::format("{} means nothing to --solver exact; leave it out", name));
+            if (verb.count(name))
+                throw Error(ErrorCode::BadOption,
+                            fmt::format("{} means nothing to --solver exact; leave it out", name));
         }
     }
-    for (auto const& [name, value] : {std::pair{"--width", a.width}, {"--width-factor", a.widthFactor}, {"--width-scale", a.widthScale}}) {
-        if (!(value >= 0.0 && std::isfinite(value))) throw Error(ErrorCode::BadOption, fmt::format("{}: {} is no width; give a number from 0 up", name, value));
+    for (auto const& [name, value] : {std::pair{"--width", a.width},
+                                      {"--width-factor", a.widthFactor},
+                                      {"--width-scale", a.widthScale}}) {
+        if (!(value >= 0.0 && std::isfinite(value)))
+            throw Error(ErrorCode::BadOption,
+                        fmt::format("{}: {} is no width; give a number from 0 up", name, value));
     }
     Refuse(verb, {"--graph", "--preserve-volume"});
     Refuse(verb, {"--limit-width", "--keep-result"});
     int const maxLevels = a.refinement == "bisect" ? 20 : 10;
     if (a.options.levels > maxLevels) {
-        throw Error(ErrorCode::BadOption, fmt::format("--levels: {} is not from 1 to {} with --refinement {}", a.options.levels, maxLevels, a.refinement));
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("--levels: {} is not from 1 to {} with --refinement {}",
+                                a.options.levels, maxLevels, a.refinement));
     }
 }
 
@@ -68,29 +84,38 @@ engine::SmoothOptions MakeOptions(Arguments const& a, bool isDouble) {
     if (a.solver == "exact") options.solver = eval::CascadeSolver::Exact;
     if (a.solver == "jacobi") options.solver = eval::CascadeSolver::Jacobi;
     bool const isCounted = options.sweeps > 0 || options.iterations > 0;
-    if (options.solver == eval::CascadeSolver::Jacobi && !isCounted) options.sweeps = 1;  // as [Diewald02] always does
+    if (options.solver == eval::CascadeSolver::Jacobi && !isCounted)
+        options.sweeps = 1;  // as [Diewald02] always does
     options.isSingle = !isDouble;
     return options;
 }
 
-engine::FilterWidths MakeWidths(Arguments const& a, CLI::App const& verb, engine::Scene const& scene, Far::TopologyLevel const& level) {
-    double const width = verb.count("--width") ? a.width : a.widthFactor * far_ext::FindMeanEdgeLength(level, scene.positions);
+engine::FilterWidths MakeWidths(Arguments const& a, CLI::App const& verb,
+                                engine::Scene const& scene, Far::TopologyLevel const& level) {
+    double const width = verb.count("--width")
+                             ? a.width
+                             : a.widthFactor * far_ext::FindMeanEdgeLength(level, scene.positions);
     if (a.isLocal) return engine::FilterWidths::LocalEdgeLengths(scene, level, a.widthScale);
     if (!a.widthMap.empty()) return engine::FilterWidths::ReadMap(a.widthMap, scene);
     if (!a.widthEdges.empty()) return engine::FilterWidths::ReadEdges(a.widthEdges, scene, level);
-    if (!a.widthTexture.empty()) return engine::FilterWidths::ReadTexture(a.widthTexture, width, scene);
+    if (!a.widthTexture.empty())
+        return engine::FilterWidths::ReadTexture(a.widthTexture, width, scene);
     return engine::FilterWidths::Constant(width);
 }
 
-/// Triangles stay triangles and all else becomes quads, unless a scheme is asked for: the filter has no subdivision rule.
+/// Triangles stay triangles and all else becomes quads, unless a scheme is asked for: the filter
+/// has no subdivision rule.
 void ChooseScheme(CommonOptions const& common, bool isBisection, far_ext::ControlMesh& cage) {
-    bool const areTriangles = std::all_of(cage.faceSizes.begin(), cage.faceSizes.end(), [](int size) { return size == 3; });
+    bool const areTriangles = std::all_of(cage.faceSizes.begin(), cage.faceSizes.end(),
+                                          [](int size) { return size == 3; });
     if (!areTriangles || (common.scheme && !isBisection)) return;
     cage.scheme = Sdc::SCHEME_LOOP;
 }
 
 void AddToReport(nlohmann::json& report, engine::SmoothReport const& found) {
-    auto const number = [](double value) { return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json(); };
+    auto const number = [](double value) {
+        return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+    };
     auto& levels = report["levels"] = nlohmann::json::array();
     for (auto const& level : found.levels) {
         levels.push_back({{"level", levels.size() + 1},
@@ -107,14 +132,19 @@ void AddToReport(nlohmann::json& report, engine::SmoothReport const& found) {
     report["largest_width"] = found.largestWidth;
     if (found.limitedBy) report["width_limited_by"] = *found.limitedBy;
     if (found.shrinkage.firstVertex >= 0) {
-        report["shrinkage"] = {{"first_vertex", found.shrinkage.firstVertex}, {"level", found.shrinkage.level}, {"radius_ratio", found.shrinkage.radiusRatio}};
+        report["shrinkage"] = {{"first_vertex", found.shrinkage.firstVertex},
+                               {"level", found.shrinkage.level},
+                               {"radius_ratio", found.shrinkage.radiusRatio}};
     }
     if (found.criticalFactor) {
         report["critical_factor"] = *found.criticalFactor;
         report["critical_width"] = found.GetCriticalWidth();
     }
     for (auto const& volume : found.volumes) {
-        report["volumes"].push_back({{"first_vertex", volume.firstVertex}, {"start", volume.start}, {"end", volume.end}, {"kept", volume.isMet}});
+        report["volumes"].push_back({{"first_vertex", volume.firstVertex},
+                                     {"start", volume.start},
+                                     {"end", volume.end},
+                                     {"kept", volume.isMet}});
     }
 }
 
@@ -122,33 +152,45 @@ void AddToReport(nlohmann::json& report, engine::SmoothReport const& found) {
 std::string Explain(std::string const& path, engine::SmoothReport const& found) {
     if (found.hasCollapsed) {
         auto const& [vertex, level, ratio] = found.shrinkage;
-        return fmt::format("{}: a filter of width {:.4g} collapses the component of vertex {} (mean radius {:.2g} of its own on level {}); measured on a coarser mesh it "
-                           "carries {:.4g}. Use less, --limit-width or --preserve-volume",
-                           path, found.largestWidth, vertex, ratio, level, found.GetCriticalWidth());
+        return fmt::format(
+            "{}: a filter of width {:.4g} collapses the component of vertex {} (mean radius {:.2g} "
+            "of its own on level {}); measured on a coarser mesh it "
+            "carries {:.4g}. Use less, --limit-width or --preserve-volume",
+            path, found.largestWidth, vertex, ratio, level, found.GetCriticalWidth());
     }
-    auto const& missed = *std::find_if(found.levels.begin(), found.levels.end(), [](auto const& level) { return !level.converged; });
-    return fmt::format("{}: on level {} the residual is {:.2g} after {} iterations; use a larger --tolerance or --solver exact", path,
-                       &missed - found.levels.data() + 1, missed.residual, missed.sweeps);
+    auto const& missed = *std::find_if(found.levels.begin(), found.levels.end(),
+                                       [](auto const& level) { return !level.converged; });
+    return fmt::format(
+        "{}: on level {} the residual is {:.2g} after {} iterations; use a larger --tolerance or "
+        "--solver exact",
+        path, &missed - found.levels.data() + 1, missed.residual, missed.sweeps);
 }
 
 int Run(Arguments const& a, CLI::App const& verb, Context& context) {
     CheckOptions(a, verb);
-    auto [scene, refiner] = context.Load(a.mesh, Context::Defects::Keep);  // engine::Smooth warns of them, or refuses
+    auto [scene, refiner] =
+        context.Load(a.mesh, Context::Defects::Keep);  // engine::Smooth warns of them, or refuses
     ChooseScheme(context.GetCommon(), a.refinement == "bisect", scene.cage);
     far_ext::Validate(scene.cage);
     context.GetReport()["inputs"].back()["subdivision"] = engine::DescribeSubdivision(scene.cage);
     bool const isDouble = context.GetCommon().IsDouble();
     auto const options = MakeOptions(a, isDouble);
     engine::SmoothReport found;
-    engine::Scene fine = engine::Smooth(scene, *refiner, MakeWidths(a, verb, scene, refiner->GetLevel(0)), options, context.GetJob(), found);
+    engine::Scene fine =
+        engine::Smooth(scene, *refiner, MakeWidths(a, verb, scene, refiner->GetLevel(0)), options,
+                       context.GetJob(), found);
     AddToReport(context.GetReport(), found);
-    if (!found.HasConverged() && !options.keepsResult) return context.MissTarget(Explain(a.mesh, found));
+    if (!found.HasConverged() && !options.keepsResult)
+        return context.MissTarget(Explain(a.mesh, found));
 
-    if (engine::GetEnding(a.output) == ".obj") fine.primvars.clear();  // which has no place for them
+    if (engine::GetEnding(a.output) == ".obj")
+        fine.primvars.clear();  // which has no place for them
     std::vector<std::string> warnings;
     engine::MeshSequence files(isDouble);
     files.Add(a.output, fine, &warnings);
-    if (!a.picture.empty()) engine::WriteShadedPicture(files.Reserve(a.picture), fine, {{a.view[0], a.view[1], a.view[2]}});
+    if (!a.picture.empty())
+        engine::WriteShadedPicture(files.Reserve(a.picture), fine,
+                                   {{a.view[0], a.view[1], a.view[2]}});
     files.Commit();
     for (std::string const& warning : warnings) context.GetJob().Warn(warning);
     context.GetReport()["vertices"] = fine.cage.numVertices;
@@ -160,37 +202,71 @@ int Run(Arguments const& a, CLI::App const& verb, Context& context) {
 
 Verb AddSmooth(CLI::App& app) {
     auto const a = std::make_shared<Arguments>();
-    CLI::App* const verb = app.add_subcommand("smooth", "Refine a mesh and smooth it by curvature motion, to a width");
+    CLI::App* const verb =
+        app.add_subcommand("smooth", "Refine a mesh and smooth it by curvature motion, to a width");
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();
-    verb->add_option("-o,--output", a->output, "mesh to write, .obj, or .ply with the width at each vertex")->required();
-    verb->add_option("--levels", a->options.levels, "refinements (default 2)")->check(CLI::Range(1, 20));
-    auto const width = [](CLI::Option* option) { return option->group("Width of the filter (one of these)"); };
+    verb->add_option("-o,--output", a->output,
+                     "mesh to write, .obj, or .ply with the width at each vertex")
+        ->required();
+    verb->add_option("--levels", a->options.levels, "refinements (default 2)")
+        ->check(CLI::Range(1, 20));
+    auto const width = [](CLI::Option* option) {
+        return option->group("Width of the filter (one of these)");
+    };
     width(verb->add_option("--width", a->width, "sigma everywhere, in mesh units"));
-    width(verb->add_option("--width-factor", a->widthFactor, "sigma everywhere, times the mean edge length (default 0.12)"));
-    width(verb->add_flag("--local", a->isLocal, "sigma by the edge lengths at each vertex, smoothed along"));
-    width(verb->add_option("--width-scale", a->widthScale, "--local: times the edge length (default 0.12)"));
+    width(verb->add_option("--width-factor", a->widthFactor,
+                           "sigma everywhere, times the mean edge length (default 0.12)"));
+    width(verb->add_flag("--local", a->isLocal,
+                         "sigma by the edge lengths at each vertex, smoothed along"));
+    width(verb->add_option("--width-scale", a->widthScale,
+                           "--local: times the edge length (default 0.12)"));
     width(verb->add_option("--width-map", a->widthMap, "CSV vertex,width: 0 where not listed"));
-    width(verb->add_option("--width-edges", a->widthEdges, "CSV v0,v1,width: rounds these edges, and leaves faces untouched"));
-    width(verb->add_option("--width-texture", a->widthTexture, "image through the texture coordinates, 0 to 1 times --width or --width-factor"));
+    width(verb->add_option("--width-edges", a->widthEdges,
+                           "CSV v0,v1,width: rounds these edges, and leaves faces untouched"));
+    width(verb->add_option(
+        "--width-texture", a->widthTexture,
+        "image through the texture coordinates, 0 to 1 times --width or --width-factor"));
     auto const solve = [](CLI::Option* option) { return option->group("Solving"); };
-    solve(verb->add_option("--refinement", a->refinement, "quadrisect (default): triangles in four, other faces into quads (--scheme catmark: triangles, too); bisect: triangles in two"))
+    solve(verb->add_option("--refinement", a->refinement,
+                           "quadrisect (default): triangles in four, other faces into quads "
+                           "(--scheme catmark: triangles, too); bisect: triangles in two"))
         ->check(CLI::IsMember({"quadrisect", "bisect"}));
-    solve(verb->add_option("--solver", a->solver, "cg (default), jacobi or exact"))->check(CLI::IsMember({"exact", "cg", "jacobi"}));
-    solve(verb->add_option("--sweeps", a->options.sweeps, "on the finest level, more on coarser ones by the a-priori rule (jacobi: default 1)"))
+    solve(verb->add_option("--solver", a->solver, "cg (default), jacobi or exact"))
+        ->check(CLI::IsMember({"exact", "cg", "jacobi"}));
+    solve(verb->add_option(
+              "--sweeps", a->options.sweeps,
+              "on the finest level, more on coarser ones by the a-priori rule (jacobi: default 1)"))
         ->check(CLI::Range(1, 1000000));
-    solve(verb->add_option("--iterations", a->options.iterations, "the same number on every level"))->check(CLI::Range(1, 1000000));
-    solve(verb->add_option("--tolerance", a->options.tolerance, "cg: to this residual on every level (default 1e-6)"))->check(CLI::Range(1e-14, 1.0));
+    solve(verb->add_option("--iterations", a->options.iterations, "the same number on every level"))
+        ->check(CLI::Range(1, 1000000));
+    solve(verb->add_option("--tolerance", a->options.tolerance,
+                           "cg: to this residual on every level (default 1e-6)"))
+        ->check(CLI::Range(1e-14, 1.0));
     auto const keep = [](CLI::Option* option) { return option->group("What stays"); };
-    keep(verb->add_option("--boundary-rule", a->boundary, "fixed (default); natural: free, its triangles degenerate with the levels"))
+    keep(verb->add_option(
+             "--boundary-rule", a->boundary,
+             "fixed (default); natural: free, its triangles degenerate with the levels"))
         ->check(CLI::IsMember({"fixed", "natural"}));
-    keep(verb->add_flag("--keep-creases", a->options.keepsCreases, "sharp edges and corners stay sharp: the filter does not act across them"));
-    keep(verb->add_flag("--preserve-volume", a->options.preservesVolume, "closed components keep their volume"));
-    keep(verb->add_flag("--graph", a->options.isGraph, "MESH is a height field: z over the plane of x and y, which stay"));
-    keep(verb->add_flag("--limit-width", a->options.limitsWidth, "reduce a width that collapses the shape to what it carries"));
-    keep(verb->add_flag("--keep-result", a->options.keepsResult, "write what collapsed or missed its tolerance"));
-    auto* const picture = verb->add_option("--picture", a->picture, "also write a PNG: the result, flat shaded");
-    verb->add_option("--view", a->view, "the picture's side that is seen, x,y,z (default 1,0.6,0.8)")->delimiter(',')->expected(3)->needs(picture);
-    verb->footer("Example:\n  limn smooth scenes/spot/spot.obj -o out/spot.smooth.obj --levels 2 --width-factor 0.3");
+    keep(verb->add_flag("--keep-creases", a->options.keepsCreases,
+                        "sharp edges and corners stay sharp: the filter does not act across them"));
+    keep(verb->add_flag("--preserve-volume", a->options.preservesVolume,
+                        "closed components keep their volume"));
+    keep(verb->add_flag("--graph", a->options.isGraph,
+                        "MESH is a height field: z over the plane of x and y, which stay"));
+    keep(verb->add_flag("--limit-width", a->options.limitsWidth,
+                        "reduce a width that collapses the shape to what it carries"));
+    keep(verb->add_flag("--keep-result", a->options.keepsResult,
+                        "write what collapsed or missed its tolerance"));
+    auto* const picture =
+        verb->add_option("--picture", a->picture, "also write a PNG: the result, flat shaded");
+    verb->add_option("--view", a->view,
+                     "the picture's side that is seen, x,y,z (default 1,0.6,0.8)")
+        ->delimiter(',')
+        ->expected(3)
+        ->needs(picture);
+    verb->footer(
+        "Example:\n  limn smooth scenes/spot/spot.obj -o out/spot.smooth.obj --levels 2 "
+        "--width-factor 0.3");
     return {verb, [a, verb](Context& context) { return Run(*a, *verb, context); }};
 }
 

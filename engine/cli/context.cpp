@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <cstdio>
 
@@ -16,7 +17,9 @@ namespace limn::cli {
 using engine::Job;
 using engine::Scene;
 
-std::string GetVersion() { return LIMN_VERSION " (OpenSubdiv 3.5)"; }
+std::string GetVersion() {
+    return LIMN_VERSION " (OpenSubdiv 3.5)";
+}
 
 namespace {
 
@@ -30,17 +33,23 @@ Job::Progress ChooseProgress(CommonOptions const& common) {
 void ApplyOptions(CommonOptions const& common, Scene& scene) {
     auto& cage = scene.cage;
     if (common.scheme) cage.scheme = engine::ParseScheme(*common.scheme);
-    if (common.boundary) cage.options.SetVtxBoundaryInterpolation(engine::ParseBoundary(*common.boundary));
+    if (common.boundary)
+        cage.options.SetVtxBoundaryInterpolation(engine::ParseBoundary(*common.boundary));
     if (common.fvar) cage.options.SetFVarLinearInterpolation(engine::ParseFVar(*common.fvar));
     if (common.creases) cage.options.SetCreasingMethod(engine::ParseCreases(*common.creases));
-    if (common.triangles) cage.options.SetTriangleSubdivision(engine::ParseTriangles(*common.triangles));
+    if (common.triangles)
+        cage.options.SetTriangleSubdivision(engine::ParseTriangles(*common.triangles));
 }
 
 }  // namespace
 
-Context::Context(CommonOptions const& common, std::string command, std::vector<std::string> arguments)
-    : _common(common), _job(ChooseProgress(common), common.isQuiet), _start(std::chrono::steady_clock::now()) {
-    // Opened before the work, so that a report that cannot be written is known before there is output.
+Context::Context(CommonOptions const& common, std::string command,
+                 std::vector<std::string> arguments)
+    : _common(common),
+      _job(ChooseProgress(common), common.isQuiet),
+      _start(std::chrono::steady_clock::now()) {
+    // Opened before the work, so that a report that cannot be written is known before there is
+    // output.
     if (!common.reportPath.empty() && common.reportPath != "-") {
         _reportFile = std::make_unique<engine::AtomicFile>(common.reportPath);
     }
@@ -81,12 +90,14 @@ int Context::MissTarget(std::string const& message) {
 
 void Context::KeepStdoutForData(bool writesToStdout) const {
     if (writesToStdout && _common.reportPath == "-") {
-        throw Error(ErrorCode::BadOption, "--report -: stdout already carries the data; name a file");
+        throw Error(ErrorCode::BadOption,
+                    "--report -: stdout already carries the data; name a file");
     }
 }
 
 void PrintData(std::string const& text) {
-    bool const isWritten = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+    bool const isWritten =
+        std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
     if (!isWritten) engine::ThrowIoError("stdout", "cannot be written");
 }
 
@@ -95,7 +106,8 @@ void Context::WriteReport() {
     _report["warnings"] = _job.GetWarnings();
     std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - _start;
     _report["seconds"] = std::round(elapsed.count() * 1e3) / 1e3;
-    std::string const text = _report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    std::string const text =
+        _report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
     if (_common.reportPath == "-") {
         PrintData(text);
     } else {

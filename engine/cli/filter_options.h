@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <nlohmann/json.hpp>
 
-#include "engine/fit/bands.h"
 #include "engine/cli/cli.h"
+#include "engine/fit/bands.h"
 
 namespace limn::cli {
 
@@ -12,9 +13,13 @@ struct FilterOptions {
     double alpha = 0.0;
 
     void AddTo(CLI::App& verb) {
-        verb.add_option("--alpha", alpha, "generalised Catmull-Clark in the first step, 0 (default) to 1")->check(CLI::Range(0.0, 1.0));
+        verb.add_option("--alpha", alpha,
+                        "generalised Catmull-Clark in the first step, 0 (default) to 1")
+            ->check(CLI::Range(0.0, 1.0));
     }
-    eval::LimitOperator Build(Context::Mesh const& mesh) const { return eval::LimitOperator::Build(*mesh.refiner, 0, {.alpha = alpha}); }
+    eval::LimitOperator Build(Context::Mesh const& mesh) const {
+        return eval::LimitOperator::Build(*mesh.refiner, 0, {.alpha = alpha});
+    }
 };
 
 /// {"volume": ..., "bounding_box": [[x,y,z],[x,y,z]]}, volume null where open.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <cstdlib>
 #include <new>
@@ -19,17 +20,23 @@ using limn::cli::CommonOptions;
 void AddCommonOptions(CLI::App& app, CommonOptions& o) {
     auto const group = [&](CLI::Option* option) { option->group("Options every verb shares"); };
     group(app.add_option("--scheme", o.scheme, "catmark, loop or bilinear (default catmark)"));
-    group(app.add_option("--boundary", o.boundary, "edge-and-corner, edge-only or none (default: the file's tag)"));
+    group(app.add_option("--boundary", o.boundary,
+                         "edge-and-corner, edge-only or none (default: the file's tag)"));
     group(app.add_option("--fvar", o.fvar,
-                         "none, corners-only, corners-plus1, corners-plus2, boundaries or all (default: the file's tag, "
+                         "none, corners-only, corners-plus1, corners-plus2, boundaries or all "
+                         "(default: the file's tag, "
                          "else corners-plus1)"));
     group(app.add_option("--creases", o.creases, "uniform or chaikin (default: the file's tag)"));
-    group(app.add_option("--triangles", o.triangles, "catmark or smooth (default: the file's tag)"));
-    group(app.add_option("--orientation", o.orientation, "right (default): faces are counter-clockwise from outside; left")
+    group(
+        app.add_option("--triangles", o.triangles, "catmark or smooth (default: the file's tag)"));
+    group(app.add_option("--orientation", o.orientation,
+                         "right (default): faces are counter-clockwise from outside; left")
               ->check(CLI::IsMember({"right", "left"})));
-    group(app.add_option("--threads", o.numThreads, "default: LIMN_THREADS, OPENIMAGEIO_THREADS, CUE_THREADS, else all cores")
+    group(app.add_option("--threads", o.numThreads,
+                         "default: LIMN_THREADS, OPENIMAGEIO_THREADS, CUE_THREADS, else all cores")
               ->check(CLI::Range(1, 1024)));
-    group(app.add_option("--report", o.reportPath, "write a JSON report of the run (- for stdout)"));
+    group(
+        app.add_option("--report", o.reportPath, "write a JSON report of the run (- for stdout)"));
     group(app.add_option("--precision", o.precision, "float (default) or double: digits of output")
               ->check(CLI::IsMember({"float", "double"})));
     group(app.add_flag("--quiet", o.isQuiet, "no progress, no warnings"));
@@ -50,11 +57,14 @@ int ChooseThreads(CommonOptions const& options) {
 
 int ToExitStatus(ErrorCode code) {
     switch (code) {
-        case ErrorCode::BadOption: return 2;
+        case ErrorCode::BadOption:
+            return 2;
         case ErrorCode::BadMesh:
         case ErrorCode::Unsupported:
-        case ErrorCode::TooLarge: return 3;
-        case ErrorCode::Io: return 5;
+        case ErrorCode::TooLarge:
+            return 3;
+        case ErrorCode::Io:
+            return 5;
     }
     return 1;
 }
@@ -67,9 +77,11 @@ int Fail(int status, std::string message) {
     return status;
 }
 
-int Run(limn::cli::Verb const& verb, CommonOptions const& common, std::vector<std::string> const& arguments) {
+int Run(limn::cli::Verb const& verb, CommonOptions const& common,
+        std::vector<std::string> const& arguments) {
     int const numThreads = ChooseThreads(common);
-    tbb::global_control const limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(numThreads));
+    tbb::global_control const limit(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<size_t>(numThreads));
     tbb::task_arena arena(numThreads);
     limn::cli::Context context(common, verb.app->get_name(), arguments);
     int const status = arena.execute([&] { return verb.run(context); });
@@ -86,8 +98,9 @@ int main(int argc, char** argv) {
     app.get_formatter()->column_width(34);
     CommonOptions common;
     using namespace limn::cli;
-    std::vector<Verb> const verbs{AddInfo(app),  AddEval(app),    AddBake(app),    AddRefine(app), AddMeasure(app),
-                                  AddFit(app),   AddBands(app),   AddDenoise(app), AddSharpen(app), AddMorph(app),  AddSmooth(app), AddField(app)};
+    std::vector<Verb> const verbs{AddInfo(app),    AddEval(app),  AddBake(app),   AddRefine(app),
+                                  AddMeasure(app), AddFit(app),   AddBands(app),  AddDenoise(app),
+                                  AddSharpen(app), AddMorph(app), AddSmooth(app), AddField(app)};
     for (auto const& verb : verbs) AddCommonOptions(*verb.app, common);
     try {
         app.parse(argc, argv);

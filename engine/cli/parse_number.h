@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <charconv>
@@ -11,7 +12,8 @@
 
 namespace limn::cli {
 
-/// A finite number of an option's text, whatever the locale. \throws Error BadOption, naming the option
+/// A finite number of an option's text, whatever the locale. \throws Error BadOption, naming the
+/// option
 inline double ParseNumber(std::string const& option, std::string_view text) {
     double value = 0.0;
     auto const [stop, code] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/differential/differential.h"
 
 #include <algorithm>
@@ -13,8 +14,8 @@
 #include "eval/differential/dirmag.h"
 #include "eval/differential/reconstruct.h"
 #include "eval/differential/subdivide_values.h"
-#include "far_ext/error.h"
 #include "far_ext/differential/laplacian.h"
+#include "far_ext/error.h"
 
 namespace limn::engine {
 
@@ -27,11 +28,13 @@ void ApplyFilter(eval::DirMag& split) {
     auto const [low, high] = std::minmax_element(split.magnitudes.begin(), split.magnitudes.end());
     double const least = *low, range = *high - *low;
     if (!(range > 0.0)) return;  // nothing to tell apart
-    for (double& magnitude : split.magnitudes) magnitude = least + range * PolariseCurvature((magnitude - least) / range);
+    for (double& magnitude : split.magnitudes)
+        magnitude = least + range * PolariseCurvature((magnitude - least) / range);
 }
 
 /// Changes coordinates of a level whose first vertices are the input's.
-void ApplyEdit(CurvatureEdit const& edit, Level const& level, Rows const& positions, double orientation, Rows& deltas) {
+void ApplyEdit(CurvatureEdit const& edit, Level const& level, Rows const& positions,
+               double orientation, Rows& deltas) {
     if (edit.isPolarised) {
         auto split = eval::SplitDirMag(level, positions, deltas);
         for (double& magnitude : split.magnitudes) magnitude *= orientation;
@@ -45,7 +48,8 @@ void ApplyEdit(CurvatureEdit const& edit, Level const& level, Rows const& positi
     for (auto const& [vertex, axis, degrees] : edit.rotations) {
         Eigen::Vector3d const direction = Eigen::Vector3d(axis.data()).normalized();
         Eigen::Map<Eigen::Vector3d> delta(&deltas[3 * static_cast<size_t>(vertex)]);
-        delta = Eigen::AngleAxisd(degrees * std::acos(-1.0) / 180.0, direction) * Eigen::Vector3d(delta);
+        delta = Eigen::AngleAxisd(degrees * std::acos(-1.0) / 180.0, direction) *
+                Eigen::Vector3d(delta);
     }
 }
 
@@ -68,14 +72,15 @@ void ExtendToBoundary(Level const& level, Rows& deltas) {
 double FindSize(Rows const& positions) {
     double mean[3] = {0, 0, 0}, sum = 0.0, count = static_cast<double>(positions.size()) / 3.0;
     for (size_t i = 0; i < positions.size(); ++i) mean[i % 3] += positions[i] / count;
-    for (size_t i = 0; i < positions.size(); ++i) sum += (positions[i] - mean[i % 3]) * (positions[i] - mean[i % 3]);
+    for (size_t i = 0; i < positions.size(); ++i)
+        sum += (positions[i] - mean[i % 3]) * (positions[i] - mean[i % 3]);
     return std::sqrt(sum / count);
 }
 
 class DifferentialRefinement {
 public:
-    DifferentialRefinement(Scene const& scene, int levels, DifferentialOptions const& options, double orientation,
-                           DifferentialReport& report)
+    DifferentialRefinement(Scene const& scene, int levels, DifferentialOptions const& options,
+                           double orientation, DifferentialReport& report)
         : _options(options), _orientation(orientation), _report(report), _spatial(scene.positions) {
         Scene curved = scene;
         curved.cage.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
@@ -89,9 +94,11 @@ private:
     Level GetStart() const { return _refiner->GetLevel(_options.spatialLevels); }
     Level GetLast() const { return _refiner->GetLevel(_refiner->GetMaxLevel()); }
 
-    far_ext::AreaLaplacian BuildAreaLaplacian(Level const& level, std::span<double const> positions) const {
-        return _options.laplacian == Laplacian::Mesh ? far_ext::BuildHeatLaplacian(level, positions)
-                                                     : far_ext::BuildCotangentLaplacian(level, positions);
+    far_ext::AreaLaplacian BuildAreaLaplacian(Level const& level,
+                                              std::span<double const> positions) const {
+        return _options.laplacian == Laplacian::Mesh
+                   ? far_ext::BuildHeatLaplacian(level, positions)
+                   : far_ext::BuildCotangentLaplacian(level, positions);
     }
     Rows FindAreaDeltas(Rows const& positions) const;
     Rows Subdivide(Rows deltas);
@@ -123,7 +130,8 @@ Rows DifferentialRefinement::Subdivide(Rows deltas) {
     if (_options.dirMagLevels > 0) {
         for (int end = level + _options.dirMagLevels; level < end; ++level) {
             CheckInterrupted();
-            split = eval::SubdivideDirMag(far_ext::BuildSubdivisionRows(*_refiner, level + 1, _options.rule), split);
+            split = eval::SubdivideDirMag(
+                far_ext::BuildSubdivisionRows(*_refiner, level + 1, _options.rule), split);
         }
         deltas = eval::JoinDirMag(split);
     }
@@ -134,12 +142,14 @@ Rows DifferentialRefinement::Subdivide(Rows deltas) {
     return deltas;
 }
 
-void DifferentialRefinement::FitAreas(eval::Reconstructor& reconstructor, Rows const& deltas, Rows& positions) {
+void DifferentialRefinement::FitAreas(eval::Reconstructor& reconstructor, Rows const& deltas,
+                                      Rows& positions) {
     auto const build = [&](std::span<double const> p) {
         CheckInterrupted();
         return BuildAreaLaplacian(GetLast(), p);
     };
-    auto const fit = eval::FitAreaLaplacian(*_refiner, reconstructor.GetMultigrid(), build, deltas, positions);
+    auto const fit =
+        eval::FitAreaLaplacian(*_refiner, reconstructor.GetMultigrid(), build, deltas, positions);
     _report.iterations += fit.iterations;
     _report.residual = fit.residual;
     _report.converged = fit.converged;
@@ -159,12 +169,14 @@ Rows DifferentialRefinement::Run() {
     double const scale = std::pow(0.25, _refiner->GetMaxLevel() - _options.spatialLevels);
     for (double& delta : deltas) delta *= scale;
     Rows areaDeltas;
-    if (_options.laplacian != Laplacian::Combinatorial) areaDeltas = Subdivide(FindAreaDeltas(_start));
+    if (_options.laplacian != Laplacian::Combinatorial)
+        areaDeltas = Subdivide(FindAreaDeltas(_start));
 
     CheckInterrupted();
     auto const start = std::chrono::steady_clock::now();
     Rows positions = _spatial;
-    eval::Reconstructor reconstructor(*_refiner, _options.handles, _options.usesCholesky ? _refiner->GetMaxLevel() : 0);
+    eval::Reconstructor reconstructor(*_refiner, _options.handles,
+                                      _options.usesCholesky ? _refiner->GetMaxLevel() : 0);
     auto const solve = reconstructor.Solve(deltas, positions, {.tolerance = _options.tolerance});
     _report.unknowns = reconstructor.GetMultigrid().GetLevels().back().numUnknowns;
     _report.iterations = solve.iterations;
@@ -172,27 +184,33 @@ Rows DifferentialRefinement::Run() {
     _report.compatibilityDefect = solve.compatibilityDefect;
     _report.converged = solve.converged;
     if (!areaDeltas.empty()) FitAreas(reconstructor, areaDeltas, positions);
-    _report.solveSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    _report.solveSeconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
     double const size = FindSize(_spatial);
     _report.sizeRatio = size > 0.0 ? FindSize(positions) / size : 1.0;
-    _report.energy = eval::FindThinPlateEnergy(eval::MeasureMeshCurvature(GetLast(), positions, _orientation));
+    _report.energy =
+        eval::FindThinPlateEnergy(eval::MeasureMeshCurvature(GetLast(), positions, _orientation));
     return positions;
 }
 
 void CheckOptions(Scene const& scene, int levels, DifferentialOptions const& options) {
     if (options.spatialLevels + options.dirMagLevels > levels) {
-        throw Error(ErrorCode::BadOption, fmt::format("--levels {} holds no {} levels in space and {} by direction and magnitude",
-                                                      levels, options.spatialLevels, options.dirMagLevels));
+        throw Error(
+            ErrorCode::BadOption,
+            fmt::format("--levels {} holds no {} levels in space and {} by direction and magnitude",
+                        levels, options.spatialLevels, options.dirMagLevels));
     }
     if (options.laplacian != Laplacian::Combinatorial && options.usesCholesky) {
-        throw Error(ErrorCode::BadOption, "--solver cholesky: only the combinatorial Laplacian stays the same from step to step; "
-                                          "use multigrid");
+        throw Error(
+            ErrorCode::BadOption,
+            "--solver cholesky: only the combinatorial Laplacian stays the same from step to step; "
+            "use multigrid");
     }
     auto const check = [&](Index vertex) {
         if (vertex >= 0 && vertex < scene.cage.numVertices) return;
-        throw Error(ErrorCode::BadMesh,
-                    fmt::format("the edit names vertex {}; there are 0 to {}", vertex, scene.cage.numVertices - 1));
+        throw Error(ErrorCode::BadMesh, fmt::format("the edit names vertex {}; there are 0 to {}",
+                                                    vertex, scene.cage.numVertices - 1));
     };
     for (auto const& factor : options.edit.factors) check(factor.vertex);
     for (auto const& rotation : options.edit.rotations) check(rotation.vertex);
@@ -200,17 +218,21 @@ void CheckOptions(Scene const& scene, int levels, DifferentialOptions const& opt
 
 void Warn(Scene const& scene, DifferentialOptions const& options, DifferentialReport& report) {
     if (!scene.cage.creaseSharpness.empty()) {
-        report.warnings.push_back("creases get round: differential coordinates hold no tangents; refine this mesh in space");
+        report.warnings.push_back(
+            "creases get round: differential coordinates hold no tangents; refine this mesh in "
+            "space");
     }
     if (report.tangentialShare > eval::kDirMagLimit && options.dirMagLevels > 0) {
-        report.warnings.push_back(fmt::format("tangential parts are {:.2f} of the differential coordinates, more than {}: --dirmag "
-                                              "takes them for normals; leave it out",
-                                              report.tangentialShare, eval::kDirMagLimit));
+        report.warnings.push_back(fmt::format(
+            "tangential parts are {:.2f} of the differential coordinates, more than {}: --dirmag "
+            "takes them for normals; leave it out",
+            report.tangentialShare, eval::kDirMagLimit));
     }
     if (std::abs(report.sizeRatio - 1.0) > 0.1) {
-        report.warnings.push_back(fmt::format("the result has {:.2f} times the size of the spatial refinement; --spatial-first 1 "
-                                              "brings coarse cages nearer",
-                                              report.sizeRatio));
+        report.warnings.push_back(fmt::format(
+            "the result has {:.2f} times the size of the spatial refinement; --spatial-first 1 "
+            "brings coarse cages nearer",
+            report.sizeRatio));
     }
 }
 
@@ -221,8 +243,8 @@ double PolariseCurvature(double x) {
     return x > 0.5 ? 0.5 + push : 0.5 - push;
 }
 
-Scene RefineDifferentially(Scene const& scene, int levels, DifferentialOptions const& options, double orientation,
-                           DifferentialReport& report) {
+Scene RefineDifferentially(Scene const& scene, int levels, DifferentialOptions const& options,
+                           double orientation, DifferentialReport& report) {
     CheckOptions(scene, levels, options);
     DifferentialRefinement refinement(scene, levels, options, orientation, report);
     Scene fine = RefineAllButPositions(scene, refinement.GetRefiner());

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -21,9 +22,10 @@ struct CurvatureEdit {
         std::array<double, 3> axis;
         double degrees;
     };
-    bool isPolarised = false;        ///< first: mean curvatures, brought to [0, 1], through [Zhu11] Sec. 4.4's filter
-    std::vector<Factor> factors;     ///< then: on mean curvature
-    std::vector<Rotation> rotations; ///< last: of its direction
+    bool isPolarised =
+        false;  ///< first: mean curvatures, brought to [0, 1], through [Zhu11] Sec. 4.4's filter
+    std::vector<Factor> factors;      ///< then: on mean curvature
+    std::vector<Rotation> rotations;  ///< last: of its direction
 };
 
 /// [Zhu11] Sec. 4.4: 1/2 +- (|x - 1/2| / 8)^(1/4), which pushes values apart around the middle.
@@ -49,23 +51,25 @@ struct DifferentialReport {
     double residual = 0.0, compatibilityDefect = 0.0;
     bool converged = false;
     double tangentialShare = 0.0;  ///< of the differential coordinates; see eval::DirMag
-    double sizeRatio = 1.0;        ///< rms distance from the mean vertex, over that of the spatial refinement
+    double sizeRatio =
+        1.0;  ///< rms distance from the mean vertex, over that of the spatial refinement
     eval::ThinPlateEnergy energy;
     std::vector<std::string> warnings;
 };
 
 /// Subdivides differential coordinates instead of positions, then finds the mesh that has them.
 ///
-/// Boundaries follow the curve rule (edge-only) whatever the scene's option, in coordinates and in space. The
-/// result has RefineUniformly's topology, attributes and vertex order; handles lie where that puts them. Its size
-/// is not the spatial one's, and nothing rescales it.
+/// Boundaries follow the curve rule (edge-only) whatever the scene's option, in coordinates and in
+/// space. The result has RefineUniformly's topology, attributes and vertex order; handles lie where
+/// that puts them. Its size is not the spatial one's, and nothing rescales it.
 ///
 /// \param orientation  +1, or -1 for faces that are clockwise seen from outside
-/// \throws Error  as RefineUniformly; BadOption: contradicting levels or handles.  BadMesh: boundaries that meet in
-///                a vertex, an edit of a vertex that is not there, with cotangents a triangle without area.
-///                Unsupported: a Laplacian or rule that needs triangles
+/// \throws Error  as RefineUniformly; BadOption: contradicting levels or handles.  BadMesh:
+///                boundaries that meet in a vertex, an edit of a vertex that is not there, with
+///                cotangents a triangle without area. Unsupported: a Laplacian or rule that needs
+///                triangles
 /// Source  [Zhu11]
-Scene RefineDifferentially(Scene const& scene, int levels, DifferentialOptions const& options, double orientation,
-                           DifferentialReport& report);
+Scene RefineDifferentially(Scene const& scene, int levels, DifferentialOptions const& options,
+                           double orientation, DifferentialReport& report);
 
 }  // namespace limn::engine

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/differential/edit_reader.h"
 
 #include <cmath>
@@ -32,11 +33,13 @@ public:
                 }
             } else if (key == "rotate") {
                 for (Json const& entry : ListOf(key, value)) {
-                    edit.rotations.push_back({VertexOf(key, entry), AxisOf(entry), NumberOf(key, entry, "degrees")});
+                    edit.rotations.push_back(
+                        {VertexOf(key, entry), AxisOf(entry), NumberOf(key, entry, "degrees")});
                     CheckKeys(key, entry, 3);
                 }
             } else if (key == "filter") {
-                if (value != "polarise") Refuse(fmt::format("filter is {}; 'polarise' is possible", value.dump()));
+                if (value != "polarise")
+                    Refuse(fmt::format("filter is {}; 'polarise' is possible", value.dump()));
                 edit.isPolarised = true;
             } else {
                 Refuse(fmt::format("key '{}' is not known; curvature, rotate and filter are", key));
@@ -57,12 +60,14 @@ private:
 
     /// All keys that are needed have been found; there must be no others.
     void CheckKeys(std::string const& key, Json const& entry, size_t count) const {
-        if (entry.size() != count) Refuse(fmt::format("'{}': {} has unknown keys", key, entry.dump()));
+        if (entry.size() != count)
+            Refuse(fmt::format("'{}': {} has unknown keys", key, entry.dump()));
     }
 
     Index VertexOf(std::string const& key, Json const& entry) const {
         double const value = NumberOf(key, entry, "vertex");
-        bool const isIndex = value == std::floor(value) && value >= 0.0 && value < std::numeric_limits<Index>::max();
+        bool const isIndex =
+            value == std::floor(value) && value >= 0.0 && value < std::numeric_limits<Index>::max();
         if (!isIndex) Refuse(fmt::format("'{}': vertex {} is no 0-based index", key, value));
         return static_cast<Index>(value);
     }
@@ -75,7 +80,8 @@ private:
     }
 
     std::array<double, 3> AxisOf(Json const& entry) const {
-        bool const isAxis = entry.contains("axis") && entry["axis"].is_array() && entry["axis"].size() == 3;
+        bool const isAxis =
+            entry.contains("axis") && entry["axis"].is_array() && entry["axis"].size() == 3;
         std::array<double, 3> axis{};
         for (size_t c = 0; isAxis && c < 3; ++c) {
             Json const& number = entry["axis"][c];
@@ -92,6 +98,8 @@ private:
 
 }  // namespace
 
-CurvatureEdit ReadCurvatureEdit(std::string const& path) { return EditReader(path).Read(); }
+CurvatureEdit ReadCurvatureEdit(std::string const& path) {
+    return EditReader(path).Read();
+}
 
 }  // namespace limn::engine

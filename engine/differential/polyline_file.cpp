@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/differential/polyline_file.h"
 
 #include <iterator>
@@ -13,11 +14,13 @@ namespace {
 size_t ResolveIndex(TextScanner& scan, std::string_view word, size_t count) {
     long long value = 0;
     auto const [stop, code] = std::from_chars(word.data(), word.data() + word.size(), value);
-    bool const isNumber = code == std::errc() && (stop == word.data() + word.size() || *stop == '/');
+    bool const isNumber =
+        code == std::errc() && (stop == word.data() + word.size() || *stop == '/');
     long long const index = value > 0 ? value - 1 : static_cast<long long>(count) + value;
     if (!isNumber || value == 0 || index < 0 || index >= static_cast<long long>(count)) {
-        scan.Refuse(fmt::format("a polyline's vertex index is {}; 1 to {} or -{} to -1 are possible here",
-                                TextScanner::Quote(word), count, count));
+        scan.Refuse(
+            fmt::format("a polyline's vertex index is {}; 1 to {} or -{} to -1 are possible here",
+                        TextScanner::Quote(word), count, count));
     }
     return static_cast<size_t>(index);
 }
@@ -33,8 +36,8 @@ eval::Curve ReadLine(TextScanner& scan, std::vector<eval::DoubleLanes> const& po
     if (curve.isClosed) indices.pop_back();
     size_t const least = curve.isClosed ? 3 : 2;
     if (indices.size() < least) {
-        scan.Refuse(fmt::format("{} polyline has {} points; at least {} are needed", curve.isClosed ? "a closed" : "a",
-                                indices.size(), least));
+        scan.Refuse(fmt::format("{} polyline has {} points; at least {} are needed",
+                                curve.isClosed ? "a closed" : "a", indices.size(), least));
     }
     for (size_t index : indices) curve.points.push_back(points[index]);
     return curve;
@@ -57,22 +60,28 @@ std::vector<eval::Curve> ReadPolylines(std::string const& path) {
         }
     }
     if (curves.empty()) {
-        throw Error(ErrorCode::BadMesh, fmt::format("{}: the file has no polylines; --curve needs 'l' lines", path));
+        throw Error(ErrorCode::BadMesh,
+                    fmt::format("{}: the file has no polylines; --curve needs 'l' lines", path));
     }
     return curves;
 }
 
-void WritePolylines(std::string const& path, std::vector<eval::Curve> const& curves, bool isDouble) {
+void WritePolylines(std::string const& path, std::vector<eval::Curve> const& curves,
+                    bool isDouble) {
     if (GetEnding(path) != ".obj") {
-        throw Error(ErrorCode::BadOption, fmt::format("-o '{}': polylines are written as .obj", path));
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("-o '{}': polylines are written as .obj", path));
     }
     fmt::memory_buffer text;
     auto const to = std::back_inserter(text);
     size_t first = 1;
     for (eval::Curve const& curve : curves) {
         for (eval::DoubleLanes const& p : curve.points) {
-            if (isDouble) fmt::format_to(to, "v {} {} {}\n", p[0], p[1], p[2]);
-            else fmt::format_to(to, "v {} {} {}\n", static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]));
+            if (isDouble)
+                fmt::format_to(to, "v {} {} {}\n", p[0], p[1], p[2]);
+            else
+                fmt::format_to(to, "v {} {} {}\n", static_cast<float>(p[0]),
+                               static_cast<float>(p[1]), static_cast<float>(p[2]));
         }
     }
     for (eval::Curve const& curve : curves) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
@@ -7,14 +8,15 @@
 
 namespace limn::engine {
 
-/// Reads the polylines ('l') of an OBJ file, one curve each; one that ends where it begins is closed. Other
-/// statements but 'v' are skipped.
+/// Reads the polylines ('l') of an OBJ file, one curve each; one that ends where it begins is
+/// closed. Other statements but 'v' are skipped.
 ///
-/// \throws Error  Io; BadMesh: no polyline, an index out of range, a closed one of fewer than 3 points
+/// \throws Error  Io; BadMesh: no polyline, an index out of range, a closed one of fewer than 3
+///                points
 std::vector<eval::Curve> ReadPolylines(std::string const& path);
 
-/// Writes curves as 'v' and 'l' of an OBJ file, complete or not at all. Numbers read back as the same float, or
-/// the same double with `isDouble`.
+/// Writes curves as 'v' and 'l' of an OBJ file, complete or not at all. Numbers read back as the
+/// same float, or the same double with `isDouble`.
 ///
 /// \throws Error  BadOption: another ending than .obj; Io
 void WritePolylines(std::string const& path, std::vector<eval::Curve> const& curves, bool isDouble);

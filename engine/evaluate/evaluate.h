@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
@@ -28,7 +29,8 @@ PlaceList ReadPlaces(std::string const& path);
 std::vector<eval::SurfacePlace> LocatePlaces(Scene const& scene, eval::LimitSurface const& surface,
                                              PlaceList const& places, std::string const& path);
 
-/// CSV text of samples, one row per place in the order given; nan where the face has no limit surface.
+/// CSV text of samples, one row per place in the order given; nan where the face has no limit
+/// surface.
 ///
 /// \param isDouble  17 significant digits rather than 9
 std::string FormatSamples(PlaceList const& places, eval::LimitSurface const& surface,
@@ -42,7 +44,8 @@ size_t CountWithoutLimit(PlaceList const& places, eval::LimitSurface const& surf
 /// \param isDouble    17 significant digits rather than 9
 /// \param numWithout  counts places without a limit surface, whose rows say nan
 /// \throws Error      BadMesh: a face that does not exist, a place outside its domain (row named)
-std::string EvaluatePlaces(Scene const& scene, Far::TopologyRefiner const& refiner, PlaceList const& places, std::string const& path, bool isLeftHanded,
+std::string EvaluatePlaces(Scene const& scene, Far::TopologyRefiner const& refiner,
+                           PlaceList const& places, std::string const& path, bool isLeftHanded,
                            bool isDouble, size_t& numWithout);
 
 }  // namespace limn::engine

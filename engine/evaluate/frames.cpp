@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/evaluate/frames.h"
 
 #include <algorithm>
@@ -34,7 +35,8 @@ bool IsNumberBefore(std::string_view a, std::string_view b) {
 
 bool IsMeshFile(fs::path const& path) {
     std::string ending = path.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return ending == ".obj" || ending == ".ply" || ending == ".off";
 }
 
@@ -42,10 +44,14 @@ bool IsMeshFile(fs::path const& path) {
 std::vector<fs::path> ListFiles(fs::path const& folder) {
     std::error_code error;
     std::vector<fs::path> files;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-        if (entry->path().filename().string()[0] != '.' && !entry->is_directory(error)) files.push_back(entry->path());
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+         entry.increment(error)) {
+        if (entry->path().filename().string()[0] != '.' && !entry->is_directory(error))
+            files.push_back(entry->path());
     }
-    if (error) throw Error(ErrorCode::Io, fmt::format("{}: cannot be listed: {}", folder.string(), error.message()));
+    if (error)
+        throw Error(ErrorCode::Io,
+                    fmt::format("{}: cannot be listed: {}", folder.string(), error.message()));
     std::sort(files.begin(), files.end());
     return files;
 }
@@ -62,17 +68,25 @@ std::vector<Frame> FindByPattern(fs::path const& pattern) {
     std::string const name = pattern.filename().string();
     size_t const at = name.find(kToken);
     if (at == std::string::npos) {
-        throw Error(ErrorCode::BadOption, fmt::format("--frames {}: neither a folder nor a file name with {{frame}}", pattern.string()));
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("--frames {}: neither a folder nor a file name with {{frame}}",
+                                pattern.string()));
     }
     std::string const before = name.substr(0, at), after = name.substr(at + kToken.size());
     std::vector<Frame> frames;
-    for (fs::path const& file : ListFiles(pattern.has_parent_path() ? pattern.parent_path() : fs::path("."))) {
+    for (fs::path const& file :
+         ListFiles(pattern.has_parent_path() ? pattern.parent_path() : fs::path("."))) {
         std::string const candidate = file.filename().string();
-        if (candidate.size() <= before.size() + after.size() || !candidate.starts_with(before) || !candidate.ends_with(after)) continue;
-        std::string const digits = candidate.substr(before.size(), candidate.size() - before.size() - after.size());
-        if (digits.find_first_not_of("0123456789") == std::string::npos) frames.push_back({file.string(), digits});
+        if (candidate.size() <= before.size() + after.size() || !candidate.starts_with(before) ||
+            !candidate.ends_with(after))
+            continue;
+        std::string const digits =
+            candidate.substr(before.size(), candidate.size() - before.size() - after.size());
+        if (digits.find_first_not_of("0123456789") == std::string::npos)
+            frames.push_back({file.string(), digits});
     }
-    std::sort(frames.begin(), frames.end(), [](Frame const& a, Frame const& b) { return IsNumberBefore(a.name, b.name); });
+    std::sort(frames.begin(), frames.end(),
+              [](Frame const& a, Frame const& b) { return IsNumberBefore(a.name, b.name); });
     return frames;
 }
 
@@ -86,20 +100,24 @@ std::string MakeOutputPath(std::string path, std::string const& frame) {
 /// Refuses a frame whose faces are not the mesh's.
 void CheckTopology(Scene const& mesh, Scene const& frame) {
     auto const refuse = [&](std::string const& difference) {
-        throw Error(ErrorCode::BadMesh, fmt::format("{}: not the topology of '{}': {}", frame.path, mesh.path, difference));
+        throw Error(ErrorCode::BadMesh, fmt::format("{}: not the topology of '{}': {}", frame.path,
+                                                    mesh.path, difference));
     };
     auto const &a = mesh.cage, &b = frame.cage;
-    if (b.numVertices != a.numVertices) refuse(fmt::format("{} vertices, there {}", b.numVertices, a.numVertices));
-    if (b.GetNumFaces() != a.GetNumFaces()) refuse(fmt::format("{} faces, there {}", b.GetNumFaces(), a.GetNumFaces()));
+    if (b.numVertices != a.numVertices)
+        refuse(fmt::format("{} vertices, there {}", b.numVertices, a.numVertices));
+    if (b.GetNumFaces() != a.GetNumFaces())
+        refuse(fmt::format("{} faces, there {}", b.GetNumFaces(), a.GetNumFaces()));
     size_t corner = 0;
     for (Index face = 0; face < a.GetNumFaces(); ++face) {
         if (b.faceSizes[face] != a.faceSizes[face]) {
-            refuse(fmt::format("{} has {} corners, there {}", frame.NameFace(face), b.faceSizes[face], a.faceSizes[face]));
+            refuse(fmt::format("{} has {} corners, there {}", frame.NameFace(face),
+                               b.faceSizes[face], a.faceSizes[face]));
         }
         for (int i = 0; i < a.faceSizes[face]; ++i, ++corner) {
             if (b.faceVertices[corner] != a.faceVertices[corner]) {
-                refuse(fmt::format("{} has vertex {} at corner {}, there {}", frame.NameFace(face), b.faceVertices[corner], i,
-                                   a.faceVertices[corner]));
+                refuse(fmt::format("{} has vertex {} at corner {}, there {}", frame.NameFace(face),
+                                   b.faceVertices[corner], i, a.faceVertices[corner]));
             }
         }
     }
@@ -111,23 +129,28 @@ std::vector<Frame> FindFrames(std::string const& folderOrPattern) {
     std::error_code ignored;
     bool const isFolder = fs::is_directory(folderOrPattern, ignored);
     auto frames = isFolder ? FindInFolder(folderOrPattern) : FindByPattern(folderOrPattern);
-    if (frames.empty()) throw Error(ErrorCode::Io, fmt::format("--frames {}: no frames found", folderOrPattern));
+    if (frames.empty())
+        throw Error(ErrorCode::Io, fmt::format("--frames {}: no frames found", folderOrPattern));
     std::map<std::string, std::string> pathOfName;
     for (Frame const& frame : frames) {
         auto const [found, isNew] = pathOfName.try_emplace(frame.name, frame.path);
         if (isNew) continue;
-        throw Error(ErrorCode::BadOption, fmt::format("--frames {}: '{}' and '{}' are both frame '{}'", folderOrPattern,
-                                                      found->second, frame.path, frame.name));
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("--frames {}: '{}' and '{}' are both frame '{}'", folderOrPattern,
+                                found->second, frame.path, frame.name));
     }
     return frames;
 }
 
-FramesReport EvaluateFrames(Scene const& scene, Far::TopologyRefiner const& refiner, PlaceList const& places,
-                            std::string const& placesPath, std::vector<Frame> const& frames,
-                            FrameOptions const& options, Job& job) {
+FramesReport EvaluateFrames(Scene const& scene, Far::TopologyRefiner const& refiner,
+                            PlaceList const& places, std::string const& placesPath,
+                            std::vector<Frame> const& frames, FrameOptions const& options,
+                            Job& job) {
     if (options.outputPattern.find(kToken) == std::string::npos) {
-        throw Error(ErrorCode::BadOption, fmt::format("-o {}: {{frame}} is missing; every frame goes to a file of its own",
-                                                      options.outputPattern));
+        throw Error(
+            ErrorCode::BadOption,
+            fmt::format("-o {}: {{frame}} is missing; every frame goes to a file of its own",
+                        options.outputPattern));
     }
     eval::LimitSurface const surface(refiner);
     eval::PlaceStencils const stencils(surface, LocatePlaces(scene, surface, places, placesPath));
@@ -139,14 +162,17 @@ FramesReport EvaluateFrames(Scene const& scene, Far::TopologyRefiner const& refi
                          : stencils.Evaluate(frame.positions, orientation);
     };
 
-    // Reading, evaluating, formatting and writing of one frame follow each other in one filter: frames are
-    // many and independent, so that the cores are kept busy by different frames at different stages.
+    // Reading, evaluating, formatting and writing of one frame follow each other in one filter:
+    // frames are many and independent, so that the cores are kept busy by different frames at
+    // different stages.
     std::vector<std::unique_ptr<AtomicFile>> files(frames.size());
     FramesReport report;
     for (Frame const& frame : frames) {
         report.outputs.push_back(MakeOutputPath(options.outputPattern, frame.name));
-        if (fs::path(report.outputs.back()).lexically_normal() == fs::path(frame.path).lexically_normal()) {
-            throw Error(ErrorCode::BadOption, fmt::format("-o {}: would replace the frame '{}'", options.outputPattern, frame.path));
+        if (fs::path(report.outputs.back()).lexically_normal() ==
+            fs::path(frame.path).lexically_normal()) {
+            throw Error(ErrorCode::BadOption, fmt::format("-o {}: would replace the frame '{}'",
+                                                          options.outputPattern, frame.path));
         }
     }
     job.Start("frames", frames.size());
@@ -164,10 +190,12 @@ FramesReport EvaluateFrames(Scene const& scene, Far::TopologyRefiner const& refi
         files[i] = std::move(file);
         job.Advance();
     };
-    // One frame more than there are threads, so that a core that waits for the disk finds other work.
+    // One frame more than there are threads, so that a core that waits for the disk finds other
+    // work.
     auto const numInFlight = static_cast<size_t>(tbb::this_task_arena::max_concurrency()) + 1;
-    tbb::parallel_pipeline(numInFlight, tbb::make_filter<void, size_t>(tbb::filter_mode::serial_in_order, choose) &
-                                            tbb::make_filter<size_t, void>(tbb::filter_mode::parallel, work));
+    tbb::parallel_pipeline(
+        numInFlight, tbb::make_filter<void, size_t>(tbb::filter_mode::serial_in_order, choose) &
+                         tbb::make_filter<size_t, void>(tbb::filter_mode::parallel, work));
     for (auto& file : files) file->Commit();
     job.Finish();
     report.numWithoutLimit = CountWithoutLimit(places, surface);

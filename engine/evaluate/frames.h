@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <optional>
@@ -17,17 +18,17 @@ struct Frame {
 
 /// The frames of a sequence, in order.
 ///
-/// \param folderOrPattern  a folder: all its OBJ, PLY and OFF files by name, {frame} is the name without the
-///                         ending; or a path with {frame} in its last part: the files whose names have digits
-///                         there, by number
-/// \throws Error           Io: no such folder, no frames; BadOption: neither a folder nor a pattern, or two
-///                         frames of one name
+/// \param folderOrPattern  a folder: all its OBJ, PLY and OFF files by name, {frame} is the name
+///                         without the ending; or a path with {frame} in its last part: the files
+///                         whose names have digits there, by number
+/// \throws Error           Io: no such folder, no frames; BadOption: neither a folder nor a
+///                         pattern, or two frames of one name
 std::vector<Frame> FindFrames(std::string const& folderOrPattern);
 
 struct FrameOptions {
     std::string outputPattern;  ///< with {frame}
     bool isLeftHanded = false;
-    bool isDouble = false;      ///< 17 significant digits rather than 9
+    bool isDouble = false;  ///< 17 significant digits rather than 9
     /// What applies the table, in float; none: in double.
     std::optional<eval::EvaluatorKind> evaluator{};
 };
@@ -38,17 +39,19 @@ struct FramesReport {
     std::vector<std::string> outputs;
 };
 
-/// Evaluates the same places in every frame of a sequence: weights once, then per frame reading, one sparse
-/// product and writing, several frames at a time and no more than that in memory. Results agree with
-/// EvaluatePlaces on each frame to about 1e-12 of its size (with an evaluator: to float's rounding, which
-/// second derivatives and curvatures feel most).
+/// Evaluates the same places in every frame of a sequence: weights once, then per frame reading,
+/// one sparse product and writing, several frames at a time and no more than that in memory.
+/// Results agree with EvaluatePlaces on each frame to about 1e-12 of its size (with an evaluator:
+/// to float's rounding, which second derivatives and curvatures feel most).
 ///
 /// Files    All outputs appear once the last one is written, each complete; or none does.
-/// \param scene    the topology and its tags; frames give positions only, and must have the same faces
-/// \throws Error   BadMesh: a frame that cannot be parsed or has other faces (file named), and as LocatePlaces;
-///                 BadOption: no {frame} in the output's name; Io
-FramesReport EvaluateFrames(Scene const& scene, Far::TopologyRefiner const& refiner, PlaceList const& places,
-                            std::string const& placesPath, std::vector<Frame> const& frames,
-                            FrameOptions const& options, Job& job);
+/// \param scene    the topology and its tags; frames give positions only, and must have the same
+///                 faces
+/// \throws Error   BadMesh: a frame that cannot be parsed or has other faces (file named), and as
+///                 LocatePlaces; BadOption: no {frame} in the output's name; Io
+FramesReport EvaluateFrames(Scene const& scene, Far::TopologyRefiner const& refiner,
+                            PlaceList const& places, std::string const& placesPath,
+                            std::vector<Frame> const& frames, FrameOptions const& options,
+                            Job& job);
 
 }  // namespace limn::engine

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/field/field.h"
 
 #include <algorithm>
@@ -11,11 +12,11 @@
 #include "engine/scene/refine.h"
 #include "eval/differential/refine_values.h"
 #include "eval/forms/vertex_covectors.h"
+#include "far_ext/differential/subdivision_rows.h"
 #include "far_ext/error.h"
 #include "far_ext/forms/face_vectors.h"
 #include "far_ext/forms/form_operators.h"
 #include "far_ext/forms/form_stencils.h"
-#include "far_ext/differential/subdivision_rows.h"
 
 namespace limn::engine {
 
@@ -37,7 +38,8 @@ Form Spread(std::vector<FieldStrength> const& strengths, Index count, char const
     Form values(static_cast<size_t>(count), 0.0);
     for (FieldStrength const& strength : strengths) {
         if (strength.element < 0 || strength.element >= count) {
-            throw Error(ErrorCode::BadMesh, fmt::format("{} {} does not exist; there are 0 to {}", what, strength.element, count - 1));
+            throw Error(ErrorCode::BadMesh, fmt::format("{} {} does not exist; there are 0 to {}",
+                                                        what, strength.element, count - 1));
         }
         values[strength.element] += strength.strength;
     }
@@ -47,23 +49,30 @@ Form Spread(std::vector<FieldStrength> const& strengths, Index count, char const
 /// Refuses or balances strengths that have nowhere to go.
 ///
 /// \param componentOf  of each element; -1 where it has no faces
-void Balance(Scene const& scene, std::vector<eval::FieldDesigner::Imbalance> const& imbalances, std::vector<int> const& componentOf,
-             std::vector<int> const& componentOfFace, char const* what, bool isBalanced, Form& values) {
+void Balance(Scene const& scene, std::vector<eval::FieldDesigner::Imbalance> const& imbalances,
+             std::vector<int> const& componentOf, std::vector<int> const& componentOfFace,
+             char const* what, bool isBalanced, Form& values) {
     for (auto const& imbalance : imbalances) {
         if (!isBalanced) {
-            auto const face = std::find(componentOfFace.begin(), componentOfFace.end(), imbalance.component) - componentOfFace.begin();
-            throw Error(ErrorCode::BadMesh, fmt::format("{}: the {} on the component of face {} add up to {:.6g}, not 0, and nothing can leave it; change "
-                                                        "them, or let --balance spread the opposite over the component",
-                                                        scene.path, what, face, imbalance.sum));
+            auto const face =
+                std::find(componentOfFace.begin(), componentOfFace.end(), imbalance.component) -
+                componentOfFace.begin();
+            throw Error(ErrorCode::BadMesh,
+                        fmt::format("{}: the {} on the component of face {} add up to {:.6g}, not "
+                                    "0, and nothing can leave it; change "
+                                    "them, or let --balance spread the opposite over the component",
+                                    scene.path, what, face, imbalance.sum));
         }
-        double const count = static_cast<double>(std::count(componentOf.begin(), componentOf.end(), imbalance.component));
+        double const count = static_cast<double>(
+            std::count(componentOf.begin(), componentOf.end(), imbalance.component));
         for (size_t i = 0; i < values.size(); ++i) {
             if (componentOf[i] == imbalance.component) values[i] -= imbalance.sum / count;
         }
     }
 }
 
-Form Design(Scene const& scene, Far::TopologyLevel const& level, FieldOptions const& options, FieldAudit& audit) {
+Form Design(Scene const& scene, Far::TopologyLevel const& level, FieldOptions const& options,
+            FieldAudit& audit) {
     auto const start = std::chrono::steady_clock::now();
     eval::FieldDesigner designer(level, scene.positions, options.atBoundary);
     auto const& ofFace = designer.GetComponents().ofFace;
@@ -71,15 +80,23 @@ Form Design(Scene const& scene, Far::TopologyLevel const& level, FieldOptions co
     Form sources = Spread(options.sources, level.GetNumVertices(), "vertex");
     Form vortices = Spread(options.vortices, level.GetNumFaces(), "face");
     for (FieldStrength const& source : options.sources) {
-        if (ofVertex[source.element] < 0) throw Error(ErrorCode::BadMesh, fmt::format("vertex {} has no faces, so that no field can flow there", source.element));
+        if (ofVertex[source.element] < 0)
+            throw Error(ErrorCode::BadMesh,
+                        fmt::format("vertex {} has no faces, so that no field can flow there",
+                                    source.element));
     }
-    Balance(scene, designer.FindSourceImbalance(sources), ofVertex, ofFace, "sources and sinks", options.isBalanced, sources);
-    Balance(scene, designer.FindVortexImbalance(vortices), ofFace, ofFace, "vortices", options.isBalanced, vortices);
+    Balance(scene, designer.FindSourceImbalance(sources), ofVertex, ofFace, "sources and sinks",
+            options.isBalanced, sources);
+    Balance(scene, designer.FindVortexImbalance(vortices), ofFace, ofFace, "vortices",
+            options.isBalanced, vortices);
 
     audit.numGenerators = designer.CountHarmonics();
-    if (!options.harmonics.empty() && static_cast<int>(options.harmonics.size()) != audit.numGenerators) {
-        throw Error(ErrorCode::BadMesh, fmt::format("{}: --harmonic gives {} coefficients; the surface has {} generators", scene.path, options.harmonics.size(),
-                                                    audit.numGenerators));
+    if (!options.harmonics.empty() &&
+        static_cast<int>(options.harmonics.size()) != audit.numGenerators) {
+        throw Error(
+            ErrorCode::BadMesh,
+            fmt::format("{}: --harmonic gives {} coefficients; the surface has {} generators",
+                        scene.path, options.harmonics.size(), audit.numGenerators));
     }
     Form form(static_cast<size_t>(level.GetNumEdges()), 0.0);
     if (!options.sources.empty()) AddTo(form, designer.MakeGradient(sources));
@@ -87,10 +104,12 @@ Form Design(Scene const& scene, Far::TopologyLevel const& level, FieldOptions co
     CheckInterrupted();
     if (!options.harmonics.empty()) {
         auto const& harmonics = designer.GetHarmonics();
-        for (size_t i = 0; i < harmonics.size(); ++i) AddTo(form, harmonics[i], options.harmonics[i]);
+        for (size_t i = 0; i < harmonics.size(); ++i)
+            AddTo(form, harmonics[i], options.harmonics[i]);
     }
     if (!options.edges.empty()) AddTo(form, options.edges);
-    if (!options.wanted.empty()) AddTo(form, eval::MatchVectors(level, scene.positions, options.wanted));
+    if (!options.wanted.empty())
+        AddTo(form, eval::MatchVectors(level, scene.positions, options.wanted));
 
     CheckInterrupted();
     auto const parts = designer.Decompose(form);
@@ -103,17 +122,20 @@ Form Design(Scene const& scene, Far::TopologyLevel const& level, FieldOptions co
     };
     audit.maxCurlOfGradient = relative(designer.FindCurl(parts.gradient), parts.gradient);
     audit.maxDivergenceOfVortex = relative(designer.FindInflow(parts.vortex), parts.vortex);
-    audit.solveSeconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    audit.solveSeconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return form;
 }
 
 /// The largest entry of A B - C D over `numColumns` columns, row by row.
-double FindLargestDifference(far_ext::SparseRows const& a, far_ext::SparseRows const& b, far_ext::SparseRows const& c, far_ext::SparseRows const& d,
+double FindLargestDifference(far_ext::SparseRows const& a, far_ext::SparseRows const& b,
+                             far_ext::SparseRows const& c, far_ext::SparseRows const& d,
                              Index numColumns) {
     double largest = 0.0;
     Form row(static_cast<size_t>(numColumns), 0.0);  // 0 but for the columns touched
     std::vector<Index> touched;
-    auto const add = [&](far_ext::SparseRows const& left, far_ext::SparseRows const& right, int index, double sign) {
+    auto const add = [&](far_ext::SparseRows const& left, far_ext::SparseRows const& right,
+                         int index, double sign) {
         for (int k = left.offsets[index]; k < left.offsets[index + 1]; ++k) {
             Index const inner = left.indices[k];
             for (int m = right.offsets[inner]; m < right.offsets[inner + 1]; ++m) {
@@ -140,17 +162,24 @@ Form Subdivide(Far::TopologyRefiner const& refiner, Form form, FieldAudit& audit
         CheckInterrupted();
         auto const coarse = refiner.GetLevel(level - 1), fine = refiner.GetLevel(level);
         auto const step = far_ext::BuildFormStencils(refiner, level);
-        auto const s0 = far_ext::BuildSubdivisionRows(refiner, level, far_ext::SubdivisionRule::Scheme);
-        audit.commutationD0 = std::max(audit.commutationD0, FindLargestDifference(far_ext::BuildD0(fine), s0, step.s1, far_ext::BuildD0(coarse),
-                                                                                  coarse.GetNumVertices()));
-        audit.commutationD1 = std::max(audit.commutationD1, FindLargestDifference(far_ext::BuildD1(fine), step.s1, step.s2, far_ext::BuildD1(coarse),
-                                                                                  coarse.GetNumEdges()));
+        auto const s0 =
+            far_ext::BuildSubdivisionRows(refiner, level, far_ext::SubdivisionRule::Scheme);
+        audit.commutationD0 =
+            std::max(audit.commutationD0,
+                     FindLargestDifference(far_ext::BuildD0(fine), s0, step.s1,
+                                           far_ext::BuildD0(coarse), coarse.GetNumVertices()));
+        audit.commutationD1 =
+            std::max(audit.commutationD1,
+                     FindLargestDifference(far_ext::BuildD1(fine), step.s1, step.s2,
+                                           far_ext::BuildD1(coarse), coarse.GetNumEdges()));
         form = step.s1.Apply(form);
     }
     return form;
 }
 
-std::array<double, 3> ToArray(Eigen::Vector3d const& v) { return {v[0], v[1], v[2]}; }
+std::array<double, 3> ToArray(Eigen::Vector3d const& v) {
+    return {v[0], v[1], v[2]};
+}
 
 void FindVertexVectors(Field& field) {
     int const last = field.refined->GetMaxLevel();
@@ -161,36 +190,42 @@ void FindVertexVectors(Field& field) {
     tbb::parallel_for(Index(0), count, [&](Index vertex) {
         auto const covector = covectors.Find(vertex, field.form, field.mesh.positions);
         field.vectors[vertex] = ToArray(covector.GetVector());
-        Eigen::Map<Eigen::Vector3d>(&field.mesh.normals[3 * static_cast<size_t>(vertex)]) = covector.GetNormal();
+        Eigen::Map<Eigen::Vector3d>(&field.mesh.normals[3 * static_cast<size_t>(vertex)]) =
+            covector.GetNormal();
     });
 }
 
 void FindFaceVectors(Field& field) {
     auto const level = field.refined->GetLevel(field.refined->GetMaxLevel());
     Form const values = far_ext::BuildFaceVectors(level, field.mesh.positions).Apply(field.form);
-    for (size_t i = 0; i < values.size(); i += 3) field.faceVectors.push_back({values[i], values[i + 1], values[i + 2]});
+    for (size_t i = 0; i < values.size(); i += 3)
+        field.faceVectors.push_back({values[i], values[i + 1], values[i + 2]});
 }
 
 }  // namespace
 
-Field DesignField(Scene const& scene, Far::TopologyRefiner const& refiner, FieldOptions const& options, FieldAudit& audit) {
+Field DesignField(Scene const& scene, Far::TopologyRefiner const& refiner,
+                  FieldOptions const& options, FieldAudit& audit) {
     far_ext::CheckForms(refiner);
     Form const control = Design(scene, refiner.GetLevel(0), options, audit);
 
     int levels = options.levels;
-    if (options.hasVertexVectors && !far_ext::HasRefinedFaces(scene.cage)) levels = std::max(levels, 1);
+    if (options.hasVertexVectors && !far_ext::HasRefinedFaces(scene.cage))
+        levels = std::max(levels, 1);
     Field field;
     field.refined = MakeUniformRefiner(scene, levels);
     field.form = Subdivide(*field.refined, control, audit);
     field.mesh = RefineAllButPositions(scene, *field.refined);
     field.mesh.positions = scene.positions;
-    for (int level = 1; level <= levels; ++level) field.mesh.positions = eval::RefineValues<3>(*field.refined, level, field.mesh.positions);
+    for (int level = 1; level <= levels; ++level)
+        field.mesh.positions = eval::RefineValues<3>(*field.refined, level, field.mesh.positions);
     if (options.hasVertexVectors) FindVertexVectors(field);
     FindFaceVectors(field);
 
     auto const last = field.refined->GetLevel(levels);
     audit.indices = eval::FindFieldIndices(last, field.form);
-    for (int euler : far_ext::FaceComponents::Find(last).FindEulerCharacteristics(last)) audit.eulerCharacteristic += euler;
+    for (int euler : far_ext::FaceComponents::Find(last).FindEulerCharacteristics(last))
+        audit.eulerCharacteristic += euler;
     return field;
 }
 

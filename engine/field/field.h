@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -21,43 +22,53 @@ struct FieldStrength {
 
 /// What a field is made of; the parts add up.
 struct FieldOptions {
-    std::vector<FieldStrength> sources;   ///< per vertex: flow that comes out there; sinks are negative
-    std::vector<FieldStrength> vortices;  ///< per face: circulation, counter-clockwise
-    std::vector<double> harmonics;        ///< a coefficient per generator; empty: none
-    std::vector<double> edges;            ///< a given 1-form, per edge; empty: none
+    std::vector<FieldStrength>
+        sources;  ///< per vertex: flow that comes out there; sinks are negative
+    std::vector<FieldStrength> vortices;     ///< per face: circulation, counter-clockwise
+    std::vector<double> harmonics;           ///< a coefficient per generator; empty: none
+    std::vector<double> edges;               ///< a given 1-form, per edge; empty: none
     std::vector<eval::WantedVector> wanted;  ///< vectors to be matched; empty: none
     eval::AtBoundary atBoundary = eval::AtBoundary::Tangent;
-    bool isBalanced = false;  ///< strengths that do not add up to 0 are balanced over their component, evenly
-    int levels = 0;           ///< refinements of the result
-    bool hasVertexVectors = true;  ///< limits at vertices, too; takes one level at least where faces are not all quads
+    bool isBalanced =
+        false;  ///< strengths that do not add up to 0 are balanced over their component, evenly
+    int levels = 0;  ///< refinements of the result
+    bool hasVertexVectors =
+        true;  ///< limits at vertices, too; takes one level at least where faces are not all quads
 };
 
 /// A field on a refined mesh.
 struct Field {
     std::unique_ptr<Far::TopologyRefiner> refined;  ///< its last level is the refined mesh
     std::vector<double> form;                       ///< per edge of the refined mesh
-    Scene mesh;                                     ///< refined; with limit normals where there are vertex vectors
-    std::vector<std::array<double, 3>> vectors;      ///< per vertex: the limit's tangent vector; or empty
+    Scene mesh;  ///< refined; with limit normals where there are vertex vectors
+    std::vector<std::array<double, 3>>
+        vectors;  ///< per vertex: the limit's tangent vector; or empty
     std::vector<std::array<double, 3>> faceVectors;  ///< per face, at its middle
 };
 
-/// How well the field keeps its laws (forms.md 8). Curl and divergence are relative to the largest value of the part's form.
+/// How well the field keeps its laws (forms.md 8). Curl and divergence are relative to the largest
+/// value of the part's form.
 struct FieldAudit {
     double maxCurlOfGradient = 0.0, maxDivergenceOfVortex = 0.0;
-    double commutationD0 = 0.0, commutationD1 = 0.0;  ///< max |d0 S0 - S1 d0| and |d1 S1 - S2 d1| over all levels
-    double gradientNorm = 0.0, vortexNorm = 0.0, harmonicNorm = 0.0;  ///< Hodge parts of the control form
-    int numGenerators = 0;                                            ///< of harmonic forms
-    eval::FieldIndices indices;                                       ///< of the refined form
+    double commutationD0 = 0.0,
+           commutationD1 = 0.0;  ///< max |d0 S0 - S1 d0| and |d1 S1 - S2 d1| over all levels
+    double gradientNorm = 0.0, vortexNorm = 0.0,
+           harmonicNorm = 0.0;   ///< Hodge parts of the control form
+    int numGenerators = 0;       ///< of harmonic forms
+    eval::FieldIndices indices;  ///< of the refined form
     int eulerCharacteristic = 0;
     double solveSeconds = 0.0;
 };
 
-/// Designs a 1-form on a scene's control mesh, subdivides it and finds the tangent vectors it stands for.
+/// Designs a 1-form on a scene's control mesh, subdivides it and finds the tangent vectors it
+/// stands for.
 ///
 /// \param refiner  the control mesh' topology
-/// \throws Error   BadMesh: what far_ext::CheckForms refuses, an element that does not exist, strengths that do not add up to
-///                 0 where they must, a wrong number of harmonic coefficients.  As RefineUniformly
+/// \throws Error   BadMesh: what far_ext::CheckForms refuses, an element that does not exist,
+///                 strengths that do not add up to 0 where they must, a wrong number of harmonic
+///                 coefficients.  As RefineUniformly
 /// Source  [Wang06] Sec. 5; forms.md 8
-Field DesignField(Scene const& scene, Far::TopologyRefiner const& refiner, FieldOptions const& options, FieldAudit& audit);
+Field DesignField(Scene const& scene, Far::TopologyRefiner const& refiner,
+                  FieldOptions const& options, FieldAudit& audit);
 
 }  // namespace limn::engine

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/fit/bands.h"
 
 #include <Eigen/Core>
@@ -11,7 +12,9 @@ namespace limn::engine {
 
 MeshExtent MeasureExtent(Scene const& scene, Far::TopologyLevel const& level) {
     MeshExtent extent;
-    auto const point = [&](size_t vertex) { return Eigen::Vector3d::Map(&scene.positions[3 * vertex]); };
+    auto const point = [&](size_t vertex) {
+        return Eigen::Vector3d::Map(&scene.positions[3 * vertex]);
+    };
     Eigen::Vector3d low = point(0), high = low;
     for (size_t vertex = 1; vertex < scene.positions.size() / 3; ++vertex) {
         low = low.cwiseMin(point(vertex));
@@ -28,15 +31,19 @@ MeshExtent MeasureExtent(Scene const& scene, Far::TopologyLevel const& level) {
     double sixfold = 0.0;
     size_t corner = 0;
     for (int size : scene.cage.faceSizes) {
-        auto const at = [&](size_t i) -> Eigen::Vector3d { return point(static_cast<size_t>(scene.cage.faceVertices[corner + i])) - low; };
-        for (size_t i = 1; i + 1 < static_cast<size_t>(size); ++i) sixfold += at(0).dot(at(i).cross(at(i + 1)));
+        auto const at = [&](size_t i) -> Eigen::Vector3d {
+            return point(static_cast<size_t>(scene.cage.faceVertices[corner + i])) - low;
+        };
+        for (size_t i = 1; i + 1 < static_cast<size_t>(size); ++i)
+            sixfold += at(0).dot(at(i).cross(at(i + 1)));
         corner += static_cast<size_t>(size);
     }
     extent.volume = sixfold / 6.0;
     return extent;
 }
 
-std::vector<std::vector<double>> SplitIntoBands(Scene const& scene, eval::LimitOperator const& A, int count) {
+std::vector<std::vector<double>> SplitIntoBands(Scene const& scene, eval::LimitOperator const& A,
+                                                int count) {
     eval::RequireFinite(scene.positions, 3);
     std::vector<std::vector<double>> bands;
     std::vector<double> rest = scene.positions;
@@ -55,20 +62,27 @@ namespace {
 
 void RequireSameFaces(Scene const& from, Scene const& to) {
     auto const refuse = [&](std::string const& what) {
-        throw Error(ErrorCode::BadMesh, fmt::format("{} and {} do not have the same faces: {}; a morph needs the same vertices and "
-                                                    "faces in the same order",
-                                                    from.path, to.path, what));
+        throw Error(
+            ErrorCode::BadMesh,
+            fmt::format(
+                "{} and {} do not have the same faces: {}; a morph needs the same vertices and "
+                "faces in the same order",
+                from.path, to.path, what));
     };
     auto const &a = from.cage, &b = to.cage;
-    if (a.numVertices != b.numVertices) refuse(fmt::format("{} and {} vertices", a.numVertices, b.numVertices));
-    if (a.GetNumFaces() != b.GetNumFaces()) refuse(fmt::format("{} and {} faces", a.GetNumFaces(), b.GetNumFaces()));
+    if (a.numVertices != b.numVertices)
+        refuse(fmt::format("{} and {} vertices", a.numVertices, b.numVertices));
+    if (a.GetNumFaces() != b.GetNumFaces())
+        refuse(fmt::format("{} and {} faces", a.GetNumFaces(), b.GetNumFaces()));
     size_t corner = 0;
     for (Index face = 0; face < a.GetNumFaces(); ++face) {
         size_t const size = static_cast<size_t>(a.faceSizes[face]);
         bool isSame = a.faceSizes[face] == b.faceSizes[face];
-        for (size_t i = corner; isSame && i < corner + size; ++i) isSame = a.faceVertices[i] == b.faceVertices[i];
+        for (size_t i = corner; isSame && i < corner + size; ++i)
+            isSame = a.faceVertices[i] == b.faceVertices[i];
         if (!isSame) {
-            refuse(fmt::format("{} has other vertices than {}", from.NameFace(face), to.NameFace(face)));
+            refuse(fmt::format("{} has other vertices than {}", from.NameFace(face),
+                               to.NameFace(face)));
         }
         corner += size;
     }
@@ -76,7 +90,8 @@ void RequireSameFaces(Scene const& from, Scene const& to) {
 
 }  // namespace
 
-void Morph(Scene const& from, Scene const& to, eval::LimitOperator const& A, int detail, double rate, int steps, VisitFrame const& visit) {
+void Morph(Scene const& from, Scene const& to, eval::LimitOperator const& A, int detail,
+           double rate, int steps, VisitFrame const& visit) {
     RequireSameFaces(from, to);
     eval::RequireFinite(from.positions, 3);
     eval::RequireFinite(to.positions, 3);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/fit/fit.h"
 
 #include <algorithm>
@@ -17,7 +18,8 @@ namespace {
 using LimitRow = far_ext::LimitRow;
 
 /// What alpha adds to the children of smooth vertices: (alpha/n) V - (alpha/n^2) sum E.
-void AddAlphaStep(eval::LimitOperator const& A, double alpha, std::span<double const> control, size_t length, double* children) {
+void AddAlphaStep(eval::LimitOperator const& A, double alpha, std::span<double const> control,
+                  size_t length, double* children) {
     for (Index vertex = 0; vertex < A.GetNumVertices(); ++vertex) {
         auto const& c = A.GetClass(vertex);
         if (c.kind != LimitRow::Kind::Smooth) continue;
@@ -25,7 +27,8 @@ void AddAlphaStep(eval::LimitOperator const& A, double alpha, std::span<double c
         auto const edges = A.GetNeighbours(vertex).first(static_cast<size_t>(c.numEdges));
         for (size_t k = 0; k < length; ++k) {
             double sum = 0.0;
-            for (Index neighbour : edges) sum += control[static_cast<size_t>(neighbour) * length + k];
+            for (Index neighbour : edges)
+                sum += control[static_cast<size_t>(neighbour) * length + k];
             double& child = children[static_cast<size_t>(vertex) * length + k];
             child += alpha / n * (control[static_cast<size_t>(vertex) * length + k] - sum / n);
         }
@@ -39,26 +42,33 @@ Scene RefineWithAlpha(Scene const& control, eval::LimitOperator const& A, double
     for (size_t i = 0; i < control.primvars.size(); ++i) {
         auto const& from = control.primvars[i];
         std::vector<double> const values(from.values.begin(), from.values.end());
-        std::vector<double> children(fine.primvars[i].values.begin(), fine.primvars[i].values.end());
+        std::vector<double> children(fine.primvars[i].values.begin(),
+                                     fine.primvars[i].values.end());
         AddAlphaStep(A, alpha, values, static_cast<size_t>(from.numChannels), children.data());
-        std::transform(children.begin(), children.end(), fine.primvars[i].values.begin(), [](double x) { return static_cast<float>(x); });
+        std::transform(children.begin(), children.end(), fine.primvars[i].values.begin(),
+                       [](double x) { return static_cast<float>(x); });
     }
     return fine;
 }
 
-/// Refinements towards a vertex that leave a hundredth of the tolerance: each brings the place evaluated nearer by
-/// 1/2, at vertices of high valence only by 0.66.
+/// Refinements towards a vertex that leave a hundredth of the tolerance: each brings the place
+/// evaluated nearer by 1/2, at vertices of high valence only by 0.66.
 int ChooseDepth(Scene const& scene, double size, double tolerance) {
     double longest = 0.0;
     size_t corner = 0;
-    auto const point = [&](size_t k) { return Eigen::Vector3d::Map(&scene.positions[3 * static_cast<size_t>(scene.cage.faceVertices[k])]); };
+    auto const point = [&](size_t k) {
+        return Eigen::Vector3d::Map(
+            &scene.positions[3 * static_cast<size_t>(scene.cage.faceVertices[k])]);
+    };
     for (int faceSize : scene.cage.faceSizes) {
         size_t const n = static_cast<size_t>(faceSize);
-        for (size_t i = 0; i < n; ++i) longest = std::max(longest, (point(corner + i) - point(corner + (i + 1) % n)).norm());
+        for (size_t i = 0; i < n; ++i)
+            longest = std::max(longest, (point(corner + i) - point(corner + (i + 1) % n)).norm());
         corner += n;
     }
     double const share = longest / size / (0.01 * tolerance);
-    return std::clamp(static_cast<int>(std::ceil(1.7 * std::log2(std::max(share, 1.0)))), 8, eval::FaceTree::kLimitDepth);
+    return std::clamp(static_cast<int>(std::ceil(1.7 * std::log2(std::max(share, 1.0)))), 8,
+                      eval::FaceTree::kLimitDepth);
 }
 
 /// \param mesh  whose vertex i, for those of `data`, must have its limit at the data
@@ -66,12 +76,16 @@ Certificate Certify(Scene const& mesh, std::span<double const> data, double tole
     auto const refiner = far_ext::CreateRefiner(mesh.cage);
     eval::LimitSurface const surface(*refiner);
     double const size = eval::FindSize(data, 3);
-    auto const limits = eval::EvaluateVertexLimits(surface, mesh.positions, 3, ChooseDepth(mesh, size, tolerance), CheckInterrupted);
+    auto const limits = eval::EvaluateVertexLimits(
+        surface, mesh.positions, 3, ChooseDepth(mesh, size, tolerance), CheckInterrupted);
     Certificate certificate;
     double sum = 0.0;
     size_t const count = data.size() / 3;
     for (size_t i = 0; i < count; ++i) {
-        double const miss = (Eigen::Vector3d::Map(&limits.values[3 * i]) - Eigen::Vector3d::Map(&data[3 * i])).norm() / size;
+        double const miss =
+            (Eigen::Vector3d::Map(&limits.values[3 * i]) - Eigen::Vector3d::Map(&data[3 * i]))
+                .norm() /
+            size;
         sum += miss * miss;
         if (miss <= certificate.max && certificate.worstVertex >= 0) continue;
         certificate.max = miss;
@@ -84,7 +98,8 @@ Certificate Certify(Scene const& mesh, std::span<double const> data, double tole
 }  // namespace
 
 bool FitResult::HasConverged() const {
-    return report.converged && std::all_of(primvars.begin(), primvars.end(), [](auto const& primvar) { return primvar.converged; });
+    return report.converged && std::all_of(primvars.begin(), primvars.end(),
+                                           [](auto const& primvar) { return primvar.converged; });
 }
 
 FitResult FitToLimit(Scene const& scene, FitOptions const& options) {
@@ -102,18 +117,23 @@ FitResult FitToLimit(Scene const& scene, FitOptions const& options) {
         auto const& values = scene.primvars[i].values;
         std::vector<double> const data(values.begin(), values.end());
         std::vector<double> fitted(data.size());
-        result.primvars.push_back(interpolator.Solve(data, scene.primvars[i].numChannels, fitted, solve));
-        std::transform(fitted.begin(), fitted.end(), result.mesh.primvars[i].values.begin(), [](double x) { return static_cast<float>(x); });
+        result.primvars.push_back(
+            interpolator.Solve(data, scene.primvars[i].numChannels, fitted, solve));
+        std::transform(fitted.begin(), fitted.end(), result.mesh.primvars[i].values.begin(),
+                       [](double x) { return static_cast<float>(x); });
     }
     std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - start;
     result.solveSeconds = elapsed.count();
-    result.lambdaMin = result.report.singularComponents.empty() ? interpolator.EstimateSmallestEigenvalue() : 0.0;
+    result.lambdaMin =
+        result.report.singularComponents.empty() ? interpolator.EstimateSmallestEigenvalue() : 0.0;
 
     if (options.alpha == 0.0) {
         result.certificate = Certify(result.mesh, scene.positions, options.tolerance);
         return result;
     }
-    Scene fine = RefineWithAlpha(result.mesh, eval::LimitOperator::Build(*refiner, 0, {.alpha = options.alpha}), options.alpha);
+    Scene fine = RefineWithAlpha(result.mesh,
+                                 eval::LimitOperator::Build(*refiner, 0, {.alpha = options.alpha}),
+                                 options.alpha);
     result.certificate = Certify(fine, scene.positions, options.tolerance);
     if (!options.keepsTopology) result.mesh = std::move(fine);
     return result;

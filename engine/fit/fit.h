@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <vector>
@@ -10,21 +11,23 @@ namespace limn::engine {
 
 struct FitOptions {
     eval::SolveMethod method = eval::SolveMethod::Automatic;
-    double tolerance = 1e-6;    ///< of max |M - A P| over the diagonal of the bounding box
-    int maxIterations = 1000;   ///< applications of A
-    double alpha = 0.0;         ///< generalised Catmull-Clark in the first step; 0: plain
-    bool keepsTopology = false; ///< with alpha: the control mesh itself, before that step
+    double tolerance = 1e-6;     ///< of max |M - A P| over the diagonal of the bounding box
+    int maxIterations = 1000;    ///< applications of A
+    double alpha = 0.0;          ///< generalised Catmull-Clark in the first step; 0: plain
+    bool keepsTopology = false;  ///< with alpha: the control mesh itself, before that step
 };
 
-/// How far the limit surface of the result passes from the vertices that were given, over the diagonal of
-/// their bounding box. Found without A: by refining towards each vertex (eval::EvaluateVertexLimits).
+/// How far the limit surface of the result passes from the vertices that were given, over the
+/// diagonal of their bounding box. Found without A: by refining towards each vertex
+/// (eval::EvaluateVertexLimits).
 struct Certificate {
     double max = 0.0, rms = 0.0;
     Index worstVertex = -1;
 };
 
 struct FitResult {
-    Scene mesh;  ///< the control mesh; one level finer than the input with alpha, unless keepsTopology
+    Scene mesh;  ///< the control mesh; one level finer than the input with alpha, unless
+                 ///< keepsTopology
     eval::SolveReport report;                 ///< of the positions
     std::vector<eval::SolveReport> primvars;  ///< of the scene's primvars, in their order
     Certificate certificate;
@@ -34,11 +37,11 @@ struct FitResult {
     bool HasConverged() const;
 };
 
-/// Finds the control mesh whose limit surface passes through the scene's vertices, and fits its primvars the
-/// same way. Not converging is an answer; the mesh is then the best there is.
+/// Finds the control mesh whose limit surface passes through the scene's vertices, and fits its
+/// primvars the same way. Not converging is an answer; the mesh is then the best there is.
 ///
-/// \throws Error        BadMesh: a coordinate that is no number.  BadOption: alpha outside [0, 1] or with a scheme
-///                      that has none
+/// \throws Error        BadMesh: a coordinate that is no number.  BadOption: alpha outside [0, 1]
+///                      or with a scheme that has none
 /// \throws Interrupted
 /// Source  [LaiCheng11] Sec. 4; surface.md 1
 FitResult FitToLimit(Scene const& scene, FitOptions const& options);

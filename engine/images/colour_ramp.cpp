@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/images/colour_ramp.h"
 
 #include <algorithm>
@@ -11,8 +12,10 @@ namespace limn::engine {
 
 ColourRamp::ColourRamp(std::vector<Colour> const& colours) : _colours(colours) {
     size_t const count = colours.size();
-    if (count < 2) throw Error(ErrorCode::BadOption, "--noise-ramp: at least two colours are needed");
-    std::vector<Colour> control = colours;  // ends are corners: control point and colour are the same
+    if (count < 2)
+        throw Error(ErrorCode::BadOption, "--noise-ramp: at least two colours are needed");
+    std::vector<Colour> control =
+        colours;  // ends are corners: control point and colour are the same
     for (size_t c = 0; c < 3; ++c) {
         // The tridiagonal system of the inner points by elimination.
         std::vector<double> ratio(count, 0.0), right(count);
@@ -22,7 +25,8 @@ ColourRamp::ColourRamp(std::vector<Colour> const& colours) : _colours(colours) {
             ratio[i] = 1.0 / pivot;
             right[i] = (6.0 * colours[i][c] - right[i - 1]) / pivot;
         }
-        for (size_t i = count - 2; i > 0; --i) control[i][c] = right[i] - ratio[i] * control[i + 1][c];
+        for (size_t i = count - 2; i > 0; --i)
+            control[i][c] = right[i] - ratio[i] * control[i + 1][c];
     }
     // A corner's curve has no curvature at its end: the point beyond mirrors the one before.
     auto const mirror = [](Colour const& end, Colour const& inner) {
@@ -43,11 +47,16 @@ ColourRamp ColourRamp::Parse(std::string const& text) {
         unsigned value = 0;
         char const* const last = word.data() + word.size();
         bool const hasForm = word.size() == 7 && word[0] == '#' &&
-                             std::from_chars(word.data() + 1, last, value, 16) == std::from_chars_result{last, std::errc()};
+                             std::from_chars(word.data() + 1, last, value, 16) ==
+                                 std::from_chars_result{last, std::errc()};
         if (!hasForm) {
-            throw Error(ErrorCode::BadOption, fmt::format("--noise-ramp: '{}' is not a colour; write #rrggbb, e.g. #ff8000", word));
+            throw Error(
+                ErrorCode::BadOption,
+                fmt::format("--noise-ramp: '{}' is not a colour; write #rrggbb, e.g. #ff8000",
+                            word));
         }
-        colours.push_back({(value >> 16 & 255) / 255.0, (value >> 8 & 255) / 255.0, (value & 255) / 255.0});
+        colours.push_back(
+            {(value >> 16 & 255) / 255.0, (value >> 8 & 255) / 255.0, (value & 255) / 255.0});
         begin = end + 1;
     }
     return ColourRamp(colours);
@@ -56,8 +65,11 @@ ColourRamp ColourRamp::Parse(std::string const& text) {
 std::string ColourRamp::GetText() const {
     std::string text;
     for (Colour const& colour : _colours) {
-        auto const byte = [&](size_t c) { return static_cast<int>(std::clamp(colour[c], 0.0, 1.0) * 255.0 + 0.5); };
-        text += fmt::format("{}#{:02x}{:02x}{:02x}", text.empty() ? "" : ",", byte(0), byte(1), byte(2));
+        auto const byte = [&](size_t c) {
+            return static_cast<int>(std::clamp(colour[c], 0.0, 1.0) * 255.0 + 0.5);
+        };
+        text += fmt::format("{}#{:02x}{:02x}{:02x}", text.empty() ? "" : ",", byte(0), byte(1),
+                            byte(2));
     }
     return text;
 }

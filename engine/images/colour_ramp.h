@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -6,8 +7,9 @@
 
 namespace limn::engine {
 
-/// A smooth run through equally spaced colours: the cubic B-spline that interpolates them, its ends being
-/// corners. Its control points solve the curve's limit rule (c[i-1] + 4 c[i] + c[i+1]) / 6 = colour[i].
+/// A smooth run through equally spaced colours: the cubic B-spline that interpolates them, its ends
+/// being corners. Its control points solve the curve's limit rule (c[i-1] + 4 c[i] + c[i+1]) / 6 =
+/// colour[i].
 ///
 /// Source   [LaiCheng11] Sec. 5; surface.md 1.4
 class ColourRamp {
@@ -23,7 +25,8 @@ public:
     /// As Parse takes it, in canonical form.
     std::string GetText() const;
 
-    /// The colour at t in [0, 1]; t beyond is clamped. Components may pass [0, 1] a little between colours.
+    /// The colour at t in [0, 1]; t beyond is clamped. Components may pass [0, 1] a little between
+    /// colours.
     Colour Evaluate(double t) const;
 
 private:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/images/exr_lookup.h"
 
 #include <algorithm>
@@ -23,7 +24,8 @@ struct ExrLookup::File {
 ExrLookup::ExrLookup() = default;
 ExrLookup::~ExrLookup() = default;
 
-ExrLookup::File& ExrLookup::Open(std::string const& path, std::vector<std::string> const& channels) {
+ExrLookup::File& ExrLookup::Open(std::string const& path,
+                                 std::vector<std::string> const& channels) {
     auto& file = _files[path];
     if (file && file->channels == channels) return *file;
     file = std::make_unique<File>();
@@ -62,16 +64,18 @@ float const* ExrLookup::FetchTexel(File& file, int x, int y) {
             file.input->setFrameBuffer(buffer);
             file.input->readTile(key.first, key.second);
         } catch (std::exception const& error) {
-            throw Error(ErrorCode::Io, fmt::format("'{}' cannot be read back: {}", file.path, error.what()));
+            throw Error(ErrorCode::Io,
+                        fmt::format("'{}' cannot be read back: {}", file.path, error.what()));
         }
         found = file.tiles.emplace(key, std::move(tile)).first;
     }
-    size_t const texel = static_cast<size_t>(y % T) * static_cast<size_t>(T) + static_cast<size_t>(x % T);
+    size_t const texel =
+        static_cast<size_t>(y % T) * static_cast<size_t>(T) + static_cast<size_t>(x % T);
     return &found->second[texel * numChannels];
 }
 
-std::vector<double> ExrLookup::Look(std::string const& path, std::vector<std::string> const& channels, double x,
-                                    double y) {
+std::vector<double> ExrLookup::Look(std::string const& path,
+                                    std::vector<std::string> const& channels, double x, double y) {
     File& file = Open(path, channels);
     std::vector<double> result(channels.size(), 0.0);
     double const fx = std::floor(x), fy = std::floor(y);
@@ -82,7 +86,8 @@ std::vector<double> ExrLookup::Look(std::string const& path, std::vector<std::st
             int const column = std::clamp(static_cast<int>(fx) + i, 0, file.width - 1);
             int const row = std::clamp(static_cast<int>(fy) + j, 0, file.height - 1);
             float const* const texel = FetchTexel(file, column, row);
-            for (size_t c = 0; c < channels.size(); ++c) result[c] += weight * static_cast<double>(texel[c]);
+            for (size_t c = 0; c < channels.size(); ++c)
+                result[c] += weight * static_cast<double>(texel[c]);
         }
     }
     return result;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <map>
@@ -18,7 +19,8 @@ public:
     ///
     /// \param channels  names in the file
     /// \throws Error    Io
-    std::vector<double> Look(std::string const& path, std::vector<std::string> const& channels, double x, double y);
+    std::vector<double> Look(std::string const& path, std::vector<std::string> const& channels,
+                             double x, double y);
 
 private:
     struct File;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/images/exr_writer.h"
 
 #include <algorithm>
@@ -24,8 +25,12 @@ int ExrSpec::GetNumLevels() const {
     for (int size = std::max(width, height); hasMips && size > 1; size /= 2) ++levels;
     return levels;
 }
-int ExrSpec::GetLevelWidth(int level) const { return std::max(1, width >> level); }
-int ExrSpec::GetLevelHeight(int level) const { return std::max(1, height >> level); }
+int ExrSpec::GetLevelWidth(int level) const {
+    return std::max(1, width >> level);
+}
+int ExrSpec::GetLevelHeight(int level) const {
+    return std::max(1, height >> level);
+}
 
 struct ExrWriter::Backend {
     virtual ~Backend() = default;
@@ -44,17 +49,23 @@ namespace {
 
 exr_compression_t ToCore(ExrCompression compression) {
     switch (compression) {
-        case ExrCompression::Zip: return EXR_COMPRESSION_ZIP;
-        case ExrCompression::Zips: return EXR_COMPRESSION_ZIPS;
-        default: return EXR_COMPRESSION_NONE;
+        case ExrCompression::Zip:
+            return EXR_COMPRESSION_ZIP;
+        case ExrCompression::Zips:
+            return EXR_COMPRESSION_ZIPS;
+        default:
+            return EXR_COMPRESSION_NONE;
     }
 }
 
 Imf::Compression ToLibrary(ExrCompression compression) {
     switch (compression) {
-        case ExrCompression::Rle: return Imf::RLE_COMPRESSION;
-        case ExrCompression::Piz: return Imf::PIZ_COMPRESSION;
-        default: return Imf::DWAA_COMPRESSION;
+        case ExrCompression::Rle:
+            return Imf::RLE_COMPRESSION;
+        case ExrCompression::Piz:
+            return Imf::PIZ_COMPRESSION;
+        default:
+            return Imf::DWAA_COMPRESSION;
     }
 }
 
@@ -135,9 +146,11 @@ struct ExrWriter::LibraryBackend : ExrWriter::Backend {
         header.compression() = ToLibrary(spec.compression);
         header.lineOrder() = Imf::RANDOM_Y;
         header.setTileDescription({ExrSpec::kTileSize, ExrSpec::kTileSize,
-                                   spec.hasMips ? Imf::MIPMAP_LEVELS : Imf::ONE_LEVEL, Imf::ROUND_DOWN});
+                                   spec.hasMips ? Imf::MIPMAP_LEVELS : Imf::ONE_LEVEL,
+                                   Imf::ROUND_DOWN});
         for (std::string const& name : spec.channels) {
-            header.channels().insert(name, Imf::Channel(spec.isHalf ? Imf::HALF : Imf::FLOAT, 1, 1, true));
+            header.channels().insert(
+                name, Imf::Channel(spec.isHalf ? Imf::HALF : Imf::FLOAT, 1, 1, true));
         }
         for (auto const& [name, value] : spec.attributes) {
             header.insert(name, Imf::StringAttribute(value));
@@ -185,11 +198,14 @@ ExrWriter::ExrWriter(std::string const& path, ExrSpec const& spec)
     std::sort(_sortedChannels.begin(), _sortedChannels.end(),
               [&](int a, int b) { return spec.channels[a] < spec.channels[b]; });
     bool const isOwn = spec.compression == ExrCompression::None ||
-                       spec.compression == ExrCompression::Zip || spec.compression == ExrCompression::Zips;
+                       spec.compression == ExrCompression::Zip ||
+                       spec.compression == ExrCompression::Zips;
     if (isOwn) {
-        _backend = std::make_unique<CoreBackend>(path, _file.GetTemporaryPath(), spec, _sortedChannels);
+        _backend =
+            std::make_unique<CoreBackend>(path, _file.GetTemporaryPath(), spec, _sortedChannels);
     } else {
-        _backend = std::make_unique<LibraryBackend>(path, _file.GetTemporaryPath(), spec, _sortedChannels);
+        _backend =
+            std::make_unique<LibraryBackend>(path, _file.GetTemporaryPath(), spec, _sortedChannels);
     }
 }
 
@@ -215,7 +231,8 @@ ExrTile ExrWriter::Pack(int level, int x, int y, float const* const* planes, siz
             to += w;
         } else {
             for (size_t row = 0; row < h; ++row) {
-                std::memcpy(to + row * wordsPerRow, planes[channel] + row * stride, sizeof(float) * w);
+                std::memcpy(to + row * wordsPerRow, planes[channel] + row * stride,
+                            sizeof(float) * w);
             }
             to += 2 * w;
         }
@@ -231,16 +248,19 @@ ExrTile ExrWriter::Pack(int level, int x, int y, float const* const* planes, siz
     if (!scratch.compressor) scratch.compressor = libdeflate_alloc_compressor(kDeflateLevel);
     tile.bytes.resize(numBytes);
     // A chunk that does not become smaller is stored as it is, which readers tell by its size.
-    size_t const size = libdeflate_zlib_compress(scratch.compressor, scratch.predicted.data(), numBytes,
-                                                 tile.bytes.data(), numBytes - 1);
-    if (size == 0) tile.bytes.assign(raw, raw + numBytes);
-    else tile.bytes.resize(size);
+    size_t const size = libdeflate_zlib_compress(scratch.compressor, scratch.predicted.data(),
+                                                 numBytes, tile.bytes.data(), numBytes - 1);
+    if (size == 0)
+        tile.bytes.assign(raw, raw + numBytes);
+    else
+        tile.bytes.resize(size);
     return tile;
 }
 
 ExrTile ExrWriter::PackEmpty(int level, int x, int y) const {
     int const T = ExrSpec::kTileSize;
-    std::pair const size(std::min(T, _spec.GetLevelWidth(level) - x * T), std::min(T, _spec.GetLevelHeight(level) - y * T));
+    std::pair const size(std::min(T, _spec.GetLevelWidth(level) - x * T),
+                         std::min(T, _spec.GetLevelHeight(level) - y * T));
     std::lock_guard const lock(_emptyMutex);
     auto& bytes = _emptyTiles[size];
     if (bytes.empty()) {
@@ -251,7 +271,9 @@ ExrTile ExrWriter::PackEmpty(int level, int x, int y) const {
     return {level, x, y, bytes, 0};
 }
 
-void ExrWriter::Write(ExrTile const& tile) { _backend->Write(tile); }
+void ExrWriter::Write(ExrTile const& tile) {
+    _backend->Write(tile);
+}
 
 void ExrWriter::Commit() {
     _backend->Finish();
@@ -268,15 +290,19 @@ bool HasAllChunks(exr_context_t context) {
     for (int level = 0; level < levelsX; ++level) {
         int32_t width = 0, height = 0, tileWidth = 0, tileHeight = 0;
         if (exr_get_level_sizes(context, 0, level, level, &width, &height) != EXR_ERR_SUCCESS ||
-            exr_get_tile_sizes(context, 0, level, level, &tileWidth, &tileHeight) != EXR_ERR_SUCCESS) {
+            exr_get_tile_sizes(context, 0, level, level, &tileWidth, &tileHeight) !=
+                EXR_ERR_SUCCESS) {
             return false;
         }
         for (int y = 0; y * tileHeight < height; ++y) {
             for (int x = 0; x * tileWidth < width; ++x) {
                 exr_chunk_info_t chunk;
-                if (exr_read_tile_chunk_info(context, 0, x, y, level, level, &chunk) != EXR_ERR_SUCCESS) return false;
+                if (exr_read_tile_chunk_info(context, 0, x, y, level, level, &chunk) !=
+                    EXR_ERR_SUCCESS)
+                    return false;
                 bytes.resize(chunk.packed_size);
-                if (exr_read_chunk(context, 0, &chunk, bytes.data()) != EXR_ERR_SUCCESS) return false;
+                if (exr_read_chunk(context, 0, &chunk, bytes.data()) != EXR_ERR_SUCCESS)
+                    return false;
             }
         }
     }
@@ -304,9 +330,11 @@ std::vector<std::pair<std::string, std::string>> ReadExrAttributes(std::string c
             EXR_ERR_SUCCESS) {
             continue;
         }
-        if (attribute->type == EXR_ATTR_STRING && std::string(attribute->name).starts_with(prefix)) {
-            found.emplace_back(attribute->name, std::string(attribute->string->str,
-                                                            static_cast<size_t>(attribute->string->length)));
+        if (attribute->type == EXR_ATTR_STRING &&
+            std::string(attribute->name).starts_with(prefix)) {
+            found.emplace_back(attribute->name,
+                               std::string(attribute->string->str,
+                                           static_cast<size_t>(attribute->string->length)));
         }
     }
     exr_finish(&context);

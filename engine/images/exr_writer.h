@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -24,7 +25,7 @@ struct ExrSpec {
 
     static constexpr int kTileSize = 64;
 
-    int GetNumLevels() const;          ///< 1 without mips; ROUND_DOWN otherwise
+    int GetNumLevels() const;  ///< 1 without mips; ROUND_DOWN otherwise
     int GetLevelWidth(int level) const;
     int GetLevelHeight(int level) const;
 };
@@ -33,7 +34,7 @@ struct ExrSpec {
 struct ExrTile {
     int level = 0, x = 0, y = 0;  ///< in tiles
     std::vector<uint8_t> bytes;
-    size_t numClamped = 0;        ///< finite values beyond the range of half
+    size_t numClamped = 0;  ///< finite values beyond the range of half
 };
 
 /// A tiled EXR file that appears complete or not at all. Tiles are compressed wherever they were
@@ -50,7 +51,8 @@ public:
 
     /// Makes a tile of `width` x `height` texels (a full tile, or what the level's edge leaves).
     ///
-    /// \param planes  one per channel of the spec, the tile's first texel; rows `stride` floats apart
+    /// \param planes  one per channel of the spec, the tile's first texel; rows `stride` floats
+    ///                apart
     ExrTile Pack(int level, int x, int y, float const* const* planes, size_t stride) const;
 
     /// A tile of zeros; those of one size are compressed once.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/images/images_module.h"
 
 #include <filesystem>
@@ -18,20 +19,23 @@ ImagesModule const* OpenModule() {
     std::error_code ignored;
     fs::path const program = fs::read_symlink("/proc/self/exe", ignored).parent_path();
     std::string reason;
-    for (fs::path const& folder : {program, program / "engine", program / ".." / "engine", program / ".." / ".." / "engine",
-                                   program / ".." / LIMN_MODULE_FOLDER}) {
+    for (fs::path const& folder :
+         {program, program / "engine", program / ".." / "engine", program / ".." / ".." / "engine",
+          program / ".." / LIMN_MODULE_FOLDER}) {
         fs::path const file = folder / "limn_images.so";
         if (!fs::exists(file, ignored)) continue;
         void* const handle = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
         if (handle) {
-            auto const entry = reinterpret_cast<decltype(&limn_images_module)>(::dlsym(handle, "limn_images_module"));
+            auto const entry = reinterpret_cast<decltype(&limn_images_module)>(
+                ::dlsym(handle, "limn_images_module"));
             if (entry) return entry();
         }
         char const* const error = ::dlerror();
         reason = error ? error : "it has no entry point";
     }
-    throw Error(ErrorCode::Io, fmt::format("the image module limn_images.so cannot be loaded: {}",
-                                           reason.empty() ? "it is not beside the program" : reason));
+    throw Error(ErrorCode::Io,
+                fmt::format("the image module limn_images.so cannot be loaded: {}",
+                            reason.empty() ? "it is not beside the program" : reason));
 }
 
 }  // namespace
@@ -54,7 +58,8 @@ std::vector<float> ReadFirstChannel(std::string const& path, int& width, int& he
         return to.values.data();
     };
     char reason[512] = "";
-    if (!LoadImagesModule().readFirstChannel(path.c_str(), allocate, &target, reason, sizeof reason)) {
+    if (!LoadImagesModule().readFirstChannel(path.c_str(), allocate, &target, reason,
+                                             sizeof reason)) {
         throw Error(ErrorCode::Io, fmt::format("{}: cannot be read as an image: {}", path, reason));
     }
     width = target.width;

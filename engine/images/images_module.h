@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -10,19 +11,21 @@ namespace limn::engine {
 /// (limn_images.so) that is loaded when a run first asks for it.
 struct ImagesModule {
     /// Writes 8-bit RGB as PNG. On failure returns false and puts the reason into `reason`.
-    bool (*writePng)(char const* path, int width, int height, unsigned char const* rgb, char* reason,
-                     size_t reasonSize);
+    bool (*writePng)(char const* path, int width, int height, unsigned char const* rgb,
+                     char* reason, size_t reasonSize);
 
-    /// Reads the first channel of an image of any format, rows from the top. `allocate(user, width, height)` makes
-    /// room for it. On failure as above.
-    bool (*readFirstChannel)(char const* path, float* (*allocate)(void* user, int width, int height), void* user, char* reason,
-                             size_t reasonSize);
+    /// Reads the first channel of an image of any format, rows from the top. `allocate(user, width,
+    /// height)` makes room for it. On failure as above.
+    bool (*readFirstChannel)(char const* path,
+                             float* (*allocate)(void* user, int width, int height), void* user,
+                             char* reason, size_t reasonSize);
 };
 
 /// \throws Error  Io if the module is missing beside the program and in its library folder
 ImagesModule const& LoadImagesModule();
 
-/// The first channel of an image, rows from the top; 8 and 16 bits per value become 0 to 1, floats stay as they are.
+/// The first channel of an image, rows from the top; 8 and 16 bits per value become 0 to 1, floats
+/// stay as they are.
 ///
 /// \throws Error  Io: a file that cannot be read, or is no image
 std::vector<float> ReadFirstChannel(std::string const& path, int& width, int& height);

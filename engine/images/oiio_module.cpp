@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <memory>
 
@@ -13,23 +14,28 @@ bool Fail(std::string const& why, char* reason, size_t reasonSize) {
 }
 
 /// The file's name ends in .tmp, so the format is named rather than guessed.
-bool WritePng(char const* path, int width, int height, unsigned char const* rgb, char* reason, size_t reasonSize) {
+bool WritePng(char const* path, int width, int height, unsigned char const* rgb, char* reason,
+              size_t reasonSize) {
     auto const output = OIIO::ImageOutput::create("png");
     if (!output) return Fail(OIIO::geterror(), reason, reasonSize);
     OIIO::ImageSpec const spec(width, height, 3, OIIO::TypeDesc::UINT8);
-    if (!output->open(path, spec) || !output->write_image(OIIO::TypeDesc::UINT8, rgb) || !output->close()) {
+    if (!output->open(path, spec) || !output->write_image(OIIO::TypeDesc::UINT8, rgb) ||
+        !output->close()) {
         return Fail(output->geterror(), reason, reasonSize);
     }
     return true;
 }
 
-bool ReadFirstChannel(char const* path, float* (*allocate)(void*, int, int), void* user, char* reason, size_t reasonSize) {
+bool ReadFirstChannel(char const* path, float* (*allocate)(void*, int, int), void* user,
+                      char* reason, size_t reasonSize) {
     auto const input = OIIO::ImageInput::open(path);
     if (!input) return Fail(OIIO::geterror(), reason, reasonSize);
     OIIO::ImageSpec const& spec = input->spec();
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1) return Fail("it has no pixels in two dimensions", reason, reasonSize);
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
+        return Fail("it has no pixels in two dimensions", reason, reasonSize);
     float* const pixels = allocate(user, spec.width, spec.height);
-    if (!input->read_image(0, 0, 0, 1, OIIO::TypeDesc::FLOAT, pixels)) return Fail(input->geterror(), reason, reasonSize);
+    if (!input->read_image(0, 0, 0, 1, OIIO::TypeDesc::FLOAT, pixels))
+        return Fail(input->geterror(), reason, reasonSize);
     return true;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -13,8 +14,8 @@ namespace limn::engine {
 ///
 /// \param fromStride, toStride  elements from row to row
 /// \return how many were clamped
-size_t ConvertToHalf(float const* from, size_t fromStride, uint16_t* to, size_t toStride, size_t width,
-                     size_t height);
+size_t ConvertToHalf(float const* from, size_t fromStride, uint16_t* to, size_t toStride,
+                     size_t width, size_t height);
 
 /// Extends [low, high] by the values of covered texels.
 void FindRange(float const* values, uint8_t const* covered, size_t count, float* low, float* high);

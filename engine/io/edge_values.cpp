@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/io/edge_values.h"
 
 #include <algorithm>
@@ -11,20 +12,26 @@
 
 namespace limn::engine {
 
-std::vector<EdgeValue> ReadEdgeTable(std::string const& path, char const* column, Far::TopologyLevel const& level) {
+std::vector<EdgeValue> ReadEdgeTable(std::string const& path, char const* column,
+                                     Far::TopologyLevel const& level) {
     NumberTable const table = ReadNumberTable(path, {{"v0", "v1", column}});
     std::vector<EdgeValue> values;
     std::vector<size_t> lineOfEdge(static_cast<size_t>(level.GetNumEdges()), 0);
     for (size_t row = 0; row < table.GetNumRows(); ++row) {
         int const count = level.GetNumVertices();
-        Index const from = GetIndex(table, path, row, 0, count, "vertex"), to = GetIndex(table, path, row, 1, count, "vertex");
+        Index const from = GetIndex(table, path, row, 0, count, "vertex"),
+                    to = GetIndex(table, path, row, 1, count, "vertex");
         Index const edge = level.FindEdge(from, to);
         if (edge == Far::INDEX_INVALID) {
-            throw Error(ErrorCode::BadMesh, fmt::format("{}:{}: there is no edge from vertex {} to {}", path, table.lines[row], from, to));
+            throw Error(ErrorCode::BadMesh,
+                        fmt::format("{}:{}: there is no edge from vertex {} to {}", path,
+                                    table.lines[row], from, to));
         }
         if (lineOfEdge[edge] > 0) {
-            throw Error(ErrorCode::BadMesh, fmt::format("{}:{}: the edge from vertex {} to {} comes twice, first in line {}", path, table.lines[row], from, to,
-                                                        lineOfEdge[edge]));
+            throw Error(
+                ErrorCode::BadMesh,
+                fmt::format("{}:{}: the edge from vertex {} to {} comes twice, first in line {}",
+                            path, table.lines[row], from, to, lineOfEdge[edge]));
         }
         lineOfEdge[edge] = table.lines[row];
         values.push_back({edge, from, to, table.Get(row, 2), table.lines[row]});
@@ -34,7 +41,8 @@ std::vector<EdgeValue> ReadEdgeTable(std::string const& path, char const* column
 
 std::vector<double> ReadEdgeValues(std::string const& path, Far::TopologyLevel const& level) {
     std::vector<double> form(static_cast<size_t>(level.GetNumEdges()), 0.0);
-    for (EdgeValue const& row : ReadEdgeTable(path, "value", level)) form[row.edge] = far_ext::GetSignFrom(level, row.edge, row.from) * row.value;
+    for (EdgeValue const& row : ReadEdgeTable(path, "value", level))
+        form[row.edge] = far_ext::GetSignFrom(level, row.edge, row.from) * row.value;
     return form;
 }
 
@@ -42,7 +50,8 @@ std::string FormatEdgeValues(Far::TopologyLevel const& level, std::span<double c
     std::string text = "v0,v1,value\n";
     for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
         auto const ends = level.GetEdgeVertices(edge);
-        fmt::format_to(std::back_inserter(text), "{},{},{}\n", std::min(ends[0], ends[1]), std::max(ends[0], ends[1]), form[edge]);
+        fmt::format_to(std::back_inserter(text), "{},{},{}\n", std::min(ends[0], ends[1]),
+                       std::max(ends[0], ends[1]), form[edge]);
     }
     return text;
 }

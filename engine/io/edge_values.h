@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <span>
@@ -20,9 +21,11 @@ struct EdgeValue {
 /// Rows of a table `v0,v1,COLUMN`, as they come.
 ///
 /// \throws Error  BadMesh: an edge that does not exist or comes twice (file and line named).  Io
-std::vector<EdgeValue> ReadEdgeTable(std::string const& path, char const* column, Far::TopologyLevel const& level);
+std::vector<EdgeValue> ReadEdgeTable(std::string const& path, char const* column,
+                                     Far::TopologyLevel const& level);
 
-/// A 1-form from a table `v0,v1,value`: what a field does along the edges from v0 to v1; 0 on edges that are not listed.
+/// A 1-form from a table `v0,v1,value`: what a field does along the edges from v0 to v1; 0 on edges
+/// that are not listed.
 ///
 /// \return per edge of the level, in the direction of far_ext/forms/form_operators.h
 /// \throws Error  as above

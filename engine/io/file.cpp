@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/io/file.h"
 
 #include <algorithm>
@@ -50,7 +51,7 @@ std::string GetEnding(std::string const& path) {
 InputFile::InputFile(std::string const& path) {
     Descriptor const file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
     if (file.fd < 0) ThrowIoError(path, "cannot be opened");
-    struct stat status {};
+    struct stat status{};
     if (::fstat(file.fd, &status) != 0) ThrowIoError(path, "cannot be read");
     if (S_ISDIR(status.st_mode)) {
         throw Error(ErrorCode::Io, fmt::format("'{}' cannot be read: it is a folder", path));
@@ -82,13 +83,17 @@ InputFile::InputFile(std::string const& path) {
     throw Error(ErrorCode::TooLarge, fmt::format("'{}' does not fit into memory", path));
 }
 
-InputFile::~InputFile() { std::free(_data); }
+InputFile::~InputFile() {
+    std::free(_data);
+}
 
 namespace {
 
 class Sha256Stream {
 public:
-    Sha256Stream() : _context(EVP_MD_CTX_new()) { EVP_DigestInit_ex(_context, EVP_sha256(), nullptr); }
+    Sha256Stream() : _context(EVP_MD_CTX_new()) {
+        EVP_DigestInit_ex(_context, EVP_sha256(), nullptr);
+    }
     ~Sha256Stream() { EVP_MD_CTX_free(_context); }
     Sha256Stream(Sha256Stream const&) = delete;
     Sha256Stream& operator=(Sha256Stream const&) = delete;
@@ -142,7 +147,8 @@ fs::path FolderOf(std::string const& path) {
     return folder.empty() ? fs::path(".") : folder;
 }
 
-/// Folders that this run has made for its files. Whoever adds or removes a file in one holds the mutex.
+/// Folders that this run has made for its files. Whoever adds or removes a file in one holds the
+/// mutex.
 std::mutex madeFoldersMutex;
 std::set<std::string> madeFolders;
 
@@ -157,15 +163,17 @@ void PrepareFolder(std::string const& path) {
     }
     if (errno == EEXIST) return;
     if (errno == ENOENT) {
-        throw Error(ErrorCode::Io, fmt::format("'{}' cannot be written: the folder '{}' does not exist",
-                                               path, folder.parent_path().string()));
+        throw Error(ErrorCode::Io,
+                    fmt::format("'{}' cannot be written: the folder '{}' does not exist", path,
+                                folder.parent_path().string()));
     }
     ThrowIoError(path, "cannot be written");
 }
 
 /// Removes a folder that this run has made if it is empty; one with files in it stays.
 void RemoveIfMadeAndEmpty(fs::path const& folder) {
-    if (madeFolders.contains(folder.string()) && ::rmdir(folder.c_str()) == 0) madeFolders.erase(folder.string());
+    if (madeFolders.contains(folder.string()) && ::rmdir(folder.c_str()) == 0)
+        madeFolders.erase(folder.string());
 }
 
 /// Removes `.NAME.HOST.PID.tmp` files whose process on this host has ended.
@@ -201,10 +209,11 @@ AtomicFile::AtomicFile(std::string const& path) : _path(path) {
     fs::path const folder = FolderOf(path);
     std::string const host = HostName();
     SweepStaleTemporaries(folder, host);
-    std::string const name = fmt::format(".{}.{}.{}.tmp", fs::path(path).filename().string(), host,
-                                         ::getpid());
+    std::string const name =
+        fmt::format(".{}.{}.{}.tmp", fs::path(path).filename().string(), host, ::getpid());
     _temporary = (folder / name).string();
-    Descriptor const file{::open(_temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)};
+    Descriptor const file{
+        ::open(_temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)};
     if (file.fd < 0) {
         int const reason = errno;
         RemoveIfMadeAndEmpty(folder);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstdint>
@@ -41,7 +42,8 @@ public:
     /// \throws Error  Io: a missing parent folder, no permission, ...
     explicit AtomicFile(std::string const& path);
 
-    /// Unless committed, removes the temporary, and the folder if this run has made it and it is empty now.
+    /// Unless committed, removes the temporary, and the folder if this run has made it and it is
+    /// empty now.
     ~AtomicFile();
     AtomicFile(AtomicFile const&) = delete;
     AtomicFile& operator=(AtomicFile const&) = delete;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/io/mesh_reader.h"
 
 #include <filesystem>
@@ -21,9 +22,12 @@ Scene ReadMesh(std::string const& path) {
     scene.sha256 = Sha256(bytes);
     if (bytes.empty()) throw Error(ErrorCode::BadMesh, fmt::format("{}: the file is empty", path));
     std::string const ending = GetEnding(path);
-    if (ending == ".ply" || (ending != ".obj" && bytes.starts_with("ply"))) ReadPly(bytes, scene);
-    else if (ending == ".off" || (ending != ".obj" && bytes.starts_with("OFF"))) ReadOff(bytes, scene);
-    else ReadObj(bytes, scene);
+    if (ending == ".ply" || (ending != ".obj" && bytes.starts_with("ply")))
+        ReadPly(bytes, scene);
+    else if (ending == ".off" || (ending != ".obj" && bytes.starts_with("OFF")))
+        ReadOff(bytes, scene);
+    else
+        ReadObj(bytes, scene);
     return scene;
 }
 

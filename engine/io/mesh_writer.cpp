@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/io/mesh_writer.h"
 
 #include <algorithm>
@@ -18,11 +19,15 @@ namespace {
 
 /// The shortest digits that read back as the same number.
 void AppendNumber(fmt::memory_buffer& to, double value, bool isDouble) {
-    if (isDouble) fmt::format_to(std::back_inserter(to), "{}", value);
-    else fmt::format_to(std::back_inserter(to), "{}", static_cast<float>(value));
+    if (isDouble)
+        fmt::format_to(std::back_inserter(to), "{}", value);
+    else
+        fmt::format_to(std::back_inserter(to), "{}", static_cast<float>(value));
 }
 
-void Append(fmt::memory_buffer& to, std::string_view text) { to.append(text.data(), text.data() + text.size()); }
+void Append(fmt::memory_buffer& to, std::string_view text) {
+    to.append(text.data(), text.data() + text.size());
+}
 
 class ObjText {
 public:
@@ -66,10 +71,12 @@ private:
             for (int i = 0; i < cage.faceSizes[face]; ++i, ++corner) {
                 fmt::format_to(std::back_inserter(_text), " {}", cage.faceVertices[corner] + 1);
                 if (_scene.HasUVs()) {
-                    fmt::format_to(std::back_inserter(_text), "/{}", cage.fvarChannels[0].valueIndices[corner] + 1);
+                    fmt::format_to(std::back_inserter(_text), "/{}",
+                                   cage.fvarChannels[0].valueIndices[corner] + 1);
                 }
                 if (!_scene.normals.empty()) {
-                    fmt::format_to(std::back_inserter(_text), "{}/{}", _scene.HasUVs() ? "" : "/", cage.faceVertices[corner] + 1);
+                    fmt::format_to(std::back_inserter(_text), "{}/{}", _scene.HasUVs() ? "" : "/",
+                                   cage.faceVertices[corner] + 1);
                 }
             }
             _text.push_back('\n');
@@ -82,21 +89,24 @@ private:
             fmt::format_to(std::back_inserter(_text), format, std::forward<T>(arguments)...);
         };
         for (size_t i = 0; i < cage.creaseSharpness.size(); ++i) {
-            line("t crease 2/1/0 {} {} {}\n", cage.creaseVertexPairs[2 * i], cage.creaseVertexPairs[2 * i + 1],
-                 cage.creaseSharpness[i]);
+            line("t crease 2/1/0 {} {} {}\n", cage.creaseVertexPairs[2 * i],
+                 cage.creaseVertexPairs[2 * i + 1], cage.creaseSharpness[i]);
         }
         for (size_t i = 0; i < cage.cornerSharpness.size(); ++i) {
             line("t corner 1/1/0 {} {}\n", cage.cornerVertices[i], cage.cornerSharpness[i]);
         }
         for (Index hole : cage.holes) line("t hole 1/0/0 {}\n", hole);
         constexpr int kBoundaryTag[] = {0, 2, 1};  // none, edge only, edge and corner
-        line("t interpolateboundary 1/0/0 {}\n", kBoundaryTag[cage.options.GetVtxBoundaryInterpolation()]);
+        line("t interpolateboundary 1/0/0 {}\n",
+             kBoundaryTag[cage.options.GetVtxBoundaryInterpolation()]);
         if (_scene.HasUVs()) {
             line("t facevaryinginterpolateboundary 1/0/0 {}\n",
                  static_cast<int>(cage.options.GetFVarLinearInterpolation()));
         }
-        if (cage.options.GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN) line("t creasemethod 0/0/1 chaikin\n");
-        if (cage.options.GetTriangleSubdivision() == Sdc::Options::TRI_SUB_SMOOTH) line("t smoothtriangles 0/0/1 smooth\n");
+        if (cage.options.GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN)
+            line("t creasemethod 0/0/1 chaikin\n");
+        if (cage.options.GetTriangleSubdivision() == Sdc::Options::TRI_SUB_SMOOTH)
+            line("t smoothtriangles 0/0/1 smooth\n");
     }
 
     Scene const& _scene;
@@ -111,16 +121,19 @@ public:
     std::string Make() {
         AppendHeader();
         for (Index vertex = 0; vertex < _scene.cage.numVertices; ++vertex) {
-            for (size_t c = 0; c < 3; ++c) AppendReal(_scene.positions[3 * static_cast<size_t>(vertex) + c]);
+            for (size_t c = 0; c < 3; ++c)
+                AppendReal(_scene.positions[3 * static_cast<size_t>(vertex) + c]);
             for (Primvar const& primvar : _scene.primvars) {
                 size_t const n = static_cast<size_t>(primvar.numChannels);
-                for (size_t c = 0; c < n; ++c) AppendRaw(primvar.values[static_cast<size_t>(vertex) * n + c]);
+                for (size_t c = 0; c < n; ++c)
+                    AppendRaw(primvar.values[static_cast<size_t>(vertex) * n + c]);
             }
         }
         size_t corner = 0;
         for (int size : _scene.cage.faceSizes) {
             AppendRaw(static_cast<int32_t>(size));
-            for (int i = 0; i < size; ++i) AppendRaw(static_cast<int32_t>(_scene.cage.faceVertices[corner + i]));
+            for (int i = 0; i < size; ++i)
+                AppendRaw(static_cast<int32_t>(_scene.cage.faceVertices[corner + i]));
             if (_scene.HasUVs()) {
                 AppendRaw(static_cast<int32_t>(2 * size));
                 for (int i = 0; i < size; ++i) {
@@ -145,7 +158,8 @@ private:
         for (Primvar const& primvar : _scene.primvars) {
             static char const* const kColours[] = {"red", "green", "blue", "alpha"};
             for (int c = 0; c < primvar.numChannels; ++c) {
-                line("property float {}\n", primvar.numChannels == 1 ? primvar.name.c_str() : kColours[c]);
+                line("property float {}\n",
+                     primvar.numChannels == 1 ? primvar.name.c_str() : kColours[c]);
             }
         }
         line("element face {}\nproperty list int int vertex_indices\n", _scene.cage.GetNumFaces());
@@ -158,7 +172,9 @@ private:
         static_assert(std::endian::native == std::endian::little);
         _bytes.append(reinterpret_cast<char const*>(&value), sizeof value);
     }
-    void AppendReal(double value) { _isDouble ? AppendRaw(value) : AppendRaw(static_cast<float>(value)); }
+    void AppendReal(double value) {
+        _isDouble ? AppendRaw(value) : AppendRaw(static_cast<float>(value));
+    }
 
     Scene const& _scene;
     bool _isDouble;
@@ -170,34 +186,42 @@ private:
 void RequireMeshEnding(std::string const& path) {
     std::string const ending = GetEnding(path);
     if (ending == ".obj" || ending == ".ply") return;
-    throw Error(ErrorCode::BadOption, fmt::format("-o '{}': a mesh is written as .obj or .ply", path));
+    throw Error(ErrorCode::BadOption,
+                fmt::format("-o '{}': a mesh is written as .obj or .ply", path));
 }
 
-std::string FormatMesh(std::string const& path, Scene const& scene, bool isDouble, std::vector<std::string>* warnings) {
+std::string FormatMesh(std::string const& path, Scene const& scene, bool isDouble,
+                       std::vector<std::string>* warnings) {
     RequireMeshEnding(path);
-    double const largest = isDouble ? std::numeric_limits<double>::max() : std::numeric_limits<float>::max();
+    double const largest =
+        isDouble ? std::numeric_limits<double>::max() : std::numeric_limits<float>::max();
     auto const isWritable = [&](double value) { return std::abs(value) <= largest; };
     if (!std::all_of(scene.positions.begin(), scene.positions.end(), isWritable) ||
         !std::all_of(scene.uvs.begin(), scene.uvs.end(), isWritable)) {
-        throw Error(ErrorCode::BadMesh, fmt::format("'{}': a coordinate is no number or does not fit a {}", path,
-                                                    isDouble ? "double" : "float; use --precision double"));
+        throw Error(ErrorCode::BadMesh,
+                    fmt::format("'{}': a coordinate is no number or does not fit a {}", path,
+                                isDouble ? "double" : "float; use --precision double"));
     }
     if (GetEnding(path) == ".obj") {
-        if (warnings && !scene.primvars.empty()) warnings->push_back(path + ": OBJ holds no primvars; they are left out");
+        if (warnings && !scene.primvars.empty())
+            warnings->push_back(path + ": OBJ holds no primvars; they are left out");
         return ObjText(scene, isDouble).Make();
     }
     auto const& cage = scene.cage;
-    if (warnings && (!cage.creaseSharpness.empty() || !cage.cornerSharpness.empty() || !cage.holes.empty())) {
+    if (warnings &&
+        (!cage.creaseSharpness.empty() || !cage.cornerSharpness.empty() || !cage.holes.empty())) {
         warnings->push_back(path + ": PLY holds no creases, corners or holes; they are left out");
     }
     return PlyBytes(scene, isDouble).Make();
 }
 
-void WriteMesh(std::string const& path, Scene const& scene, bool isDouble, std::vector<std::string>* warnings) {
+void WriteMesh(std::string const& path, Scene const& scene, bool isDouble,
+               std::vector<std::string>* warnings) {
     WriteFileAtomically(path, FormatMesh(path, scene, isDouble, warnings));
 }
 
-void MeshSequence::Add(std::string const& path, Scene const& scene, std::vector<std::string>* warnings) {
+void MeshSequence::Add(std::string const& path, Scene const& scene,
+                       std::vector<std::string>* warnings) {
     Add(path, FormatMesh(path, scene, _isDouble, warnings));
 }
 

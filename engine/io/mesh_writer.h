@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -12,16 +13,18 @@ namespace limn::engine {
 /// \throws Error  BadOption unless the path ends with .obj or .ply
 void RequireMeshEnding(std::string const& path);
 
-/// Writes a mesh as OBJ (with UVs, normals, groups and tags) or PLY (with corner UVs and primvars, without
-/// tags or groups) by its ending in small or capital letters, complete or not at all. Numbers read back as the same float, or the
-/// same double with `isDouble`.
+/// Writes a mesh as OBJ (with UVs, normals, groups and tags) or PLY (with corner UVs and primvars,
+/// without tags or groups) by its ending in small or capital letters, complete or not at all.
+/// Numbers read back as the same float, or the same double with `isDouble`.
 ///
 /// \param warnings  receives what the format cannot hold; may be null
 /// \throws Error    BadOption: another ending. Io
-void WriteMesh(std::string const& path, Scene const& scene, bool isDouble, std::vector<std::string>* warnings);
+void WriteMesh(std::string const& path, Scene const& scene, bool isDouble,
+               std::vector<std::string>* warnings);
 
 /// The bytes WriteMesh would write. \throws Error as WriteMesh, but for Io
-std::string FormatMesh(std::string const& path, Scene const& scene, bool isDouble, std::vector<std::string>* warnings);
+std::string FormatMesh(std::string const& path, Scene const& scene, bool isDouble,
+                       std::vector<std::string>* warnings);
 
 /// Several meshes, and files beside them, that appear together or not at all.
 class MeshSequence {

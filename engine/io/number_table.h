@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
@@ -16,14 +17,18 @@ struct NumberTable {
     double Get(size_t row, size_t column) const { return values[row * numColumns + column]; }
 };
 
-/// Reads a table whose header names the columns of one of the layouts, in any order; other columns are skipped.
+/// Reads a table whose header names the columns of one of the layouts, in any order; other columns
+/// are skipped.
 ///
-/// \throws Error  BadMesh: another header, a field that is no finite number (file and line named).  Io
-NumberTable ReadNumberTable(std::string const& path, std::vector<std::vector<std::string>> const& layouts);
+/// \throws Error  BadMesh: another header, a field that is no finite number (file and line named).
+///                Io
+NumberTable ReadNumberTable(std::string const& path,
+                            std::vector<std::vector<std::string>> const& layouts);
 
 /// A number of a table as an index from 0 to `count` - 1.
 ///
 /// \throws Error  BadMesh: it is none; `what` ("vertex") is named with file and line
-int GetIndex(NumberTable const& table, std::string const& path, size_t row, size_t column, int count, char const* what);
+int GetIndex(NumberTable const& table, std::string const& path, size_t row, size_t column,
+             int count, char const* what);
 
 }  // namespace limn::engine

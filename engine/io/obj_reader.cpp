@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/io/obj_reader.h"
 
 #include <algorithm>
@@ -15,7 +16,8 @@ constexpr size_t kMaxElements = std::numeric_limits<Index>::max() / 4;
 /// Accumulates one OBJ file; one method per statement.
 class ObjReader {
 public:
-    ObjReader(std::string_view text, Scene& scene) : _scan(WithoutByteOrderMark(text), scene.path), _scene(scene) {
+    ObjReader(std::string_view text, Scene& scene)
+        : _scan(WithoutByteOrderMark(text), scene.path), _scene(scene) {
         ReserveFor(text);
     }
 
@@ -23,14 +25,22 @@ public:
         while (_scan.NextLine()) {
             std::string_view const keyword = _scan.Word();
             if (keyword.empty() || keyword.front() == '#') continue;
-            if (keyword == "v") ReadPosition();
-            else if (keyword == "vt") ReadUV();
-            else if (keyword == "f") ReadFace();
-            else if (keyword == "t") ReadTag();
-            else if (keyword == "usemtl") ReadGroup(GroupKind::Material);
-            else if (keyword == "g") ReadGroup(GroupKind::Group);
-            else if (keyword == "o") ReadGroup(GroupKind::Object);
-            else CheckIsText(keyword);
+            if (keyword == "v")
+                ReadPosition();
+            else if (keyword == "vt")
+                ReadUV();
+            else if (keyword == "f")
+                ReadFace();
+            else if (keyword == "t")
+                ReadTag();
+            else if (keyword == "usemtl")
+                ReadGroup(GroupKind::Material);
+            else if (keyword == "g")
+                ReadGroup(GroupKind::Group);
+            else if (keyword == "o")
+                ReadGroup(GroupKind::Object);
+            else
+                CheckIsText(keyword);
         }
         Finish();
     }
@@ -86,11 +96,11 @@ private:
         }
         long long const index = value > 0 ? value - 1 : count + value;
         if (code != std::errc() || value == 0 || index < 0 || index >= count) {
-            _scan.Refuse(fmt::format("a corner's {} index is {}; {}", what,
-                                     TextScanner::Quote({at, static_cast<size_t>(stop - at)}),
-                                     count == 0 ? fmt::format("no {} stands before this line", what)
-                                                : fmt::format("1 to {} or -{} to -1 are possible here",
-                                                              count, count)));
+            _scan.Refuse(fmt::format(
+                "a corner's {} index is {}; {}", what,
+                TextScanner::Quote({at, static_cast<size_t>(stop - at)}),
+                count == 0 ? fmt::format("no {} stands before this line", what)
+                           : fmt::format("1 to {} or -{} to -1 are possible here", count, count)));
         }
         at = stop;
         return static_cast<Index>(index);
@@ -126,8 +136,9 @@ private:
                                      size == 1 ? "" : "s"));
         }
         if (numWithUV != 0 && numWithUV != size) {
-            _scan.Refuse(fmt::format("{} of a face's {} corners have a texture index; all or none must",
-                                     numWithUV, size));
+            _scan.Refuse(
+                fmt::format("{} of a face's {} corners have a texture index; all or none must",
+                            numWithUV, size));
         }
         (numWithUV ? _numFacesWithUV : _numFacesWithoutUV) += 1;
         if (!numWithUV && _firstLineWithoutUV == 0) _firstLineWithoutUV = _scan.GetLineNumber();
@@ -168,10 +179,12 @@ private:
         for (int i = 0; i < 3; ++i) {
             auto const [stop, code] = std::from_chars(at, end, *parts[i]);
             bool const isLast = i == 2;
-            if (code != std::errc() || *parts[i] < 0 || (isLast ? stop != end : stop == end || *stop != '/')) {
-                _scan.Refuse(fmt::format("tag {}: counts are {}; ints/floats/strings such as 2/1/0 are "
-                                         "needed",
-                                         TextScanner::Quote(name), TextScanner::Quote(word)));
+            if (code != std::errc() || *parts[i] < 0 ||
+                (isLast ? stop != end : stop == end || *stop != '/')) {
+                _scan.Refuse(
+                    fmt::format("tag {}: counts are {}; ints/floats/strings such as 2/1/0 are "
+                                "needed",
+                                TextScanner::Quote(name), TextScanner::Quote(word)));
             }
             at = isLast ? stop : stop + 1;
         }
@@ -205,7 +218,9 @@ private:
         }
         TagCounts const counts = ReadTagCounts(name);
         auto const need = [&](bool ok, char const* form) {
-            if (!ok) _scan.Refuse(fmt::format("tag '{}' has the wrong counts; {} is needed", name, form));
+            if (!ok)
+                _scan.Refuse(
+                    fmt::format("tag '{}' has the wrong counts; {} is needed", name, form));
         };
         if (name == "crease") {
             need(counts.ints >= 2 && (counts.floats == 1 || counts.floats == counts.ints - 1),
@@ -217,7 +232,8 @@ private:
             ReadCorner(counts);
         } else if (name == "hole") {
             need(counts.ints >= 1, "faces (1/0/0)");
-            for (long i = 0; i < counts.ints; ++i) AddTagged(_scene.cage.holes, _holeLines, TagIndex(name));
+            for (long i = 0; i < counts.ints; ++i)
+                AddTagged(_scene.cage.holes, _holeLines, TagIndex(name));
         } else if (name == "interpolateboundary") {
             need(counts.ints >= 1, "one integer (1/0/0)");
             SetBoundary(TagIndex(name));
@@ -275,9 +291,10 @@ private:
 
     void SetBoundary(Index value) {
         if (value < 0 || value > 2) {
-            _scan.Refuse(fmt::format("interpolateboundary is {}; 0 (none), 1 (edge and corner) or 2 "
-                                     "(edge only) are possible",
-                                     value));
+            _scan.Refuse(
+                fmt::format("interpolateboundary is {}; 0 (none), 1 (edge and corner) or 2 "
+                            "(edge only) are possible",
+                            value));
         }
         constexpr Sdc::Options::VtxBoundaryInterpolation kRules[] = {
             Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER,
@@ -288,7 +305,8 @@ private:
 
     void SetFVar(Index value) {
         if (value < 0 || value > 5) {
-            _scan.Refuse(fmt::format("facevaryinginterpolateboundary is {}; 0 to 5 are possible", value));
+            _scan.Refuse(
+                fmt::format("facevaryinginterpolateboundary is {}; 0 to 5 are possible", value));
         }
         constexpr Sdc::Options::FVarLinearInterpolation kRules[] = {
             Sdc::Options::FVAR_LINEAR_NONE,          Sdc::Options::FVAR_LINEAR_CORNERS_ONLY,
@@ -321,7 +339,8 @@ private:
     void Finish() {
         auto& cage = _scene.cage;
         cage.numVertices = NumVertices();
-        if (cage.faceSizes.empty()) _scan.Refuse("the file has no faces; limn needs polygons ('f' lines)");
+        if (cage.faceSizes.empty())
+            _scan.Refuse("the file has no faces; limn needs polygons ('f' lines)");
         CheckTagIndices();
         CheckNotCutShort();
         if (_numFacesWithUV == 0) {
@@ -342,15 +361,18 @@ private:
     /// Tag lines may stand before the elements they name, so they are checked at the end.
     void CheckTagIndices() {
         auto const& cage = _scene.cage;
-        auto const check = [&](Index index, Index count, uint32_t line, char const* tag, char const* what) {
+        auto const check = [&](Index index, Index count, uint32_t line, char const* tag,
+                               char const* what) {
             if (index >= 0 && index < count) return;
-            throw Error(ErrorCode::BadMesh,
-                        fmt::format("{}:{}: tag '{}' names {} {}; 0 to {} are possible (tag indices are "
-                                    "0-based)",
-                                    _scene.path, line, tag, what, index, count - 1));
+            throw Error(
+                ErrorCode::BadMesh,
+                fmt::format("{}:{}: tag '{}' names {} {}; 0 to {} are possible (tag indices are "
+                            "0-based)",
+                            _scene.path, line, tag, what, index, count - 1));
         };
         for (size_t i = 0; i < cage.creaseVertexPairs.size(); ++i) {
-            check(cage.creaseVertexPairs[i], cage.numVertices, _creaseLines[i / 2], "crease", "vertex");
+            check(cage.creaseVertexPairs[i], cage.numVertices, _creaseLines[i / 2], "crease",
+                  "vertex");
         }
         for (size_t i = 0; i < cage.cornerVertices.size(); ++i) {
             check(cage.cornerVertices[i], cage.numVertices, _cornerLines[i], "corner", "vertex");
@@ -366,9 +388,10 @@ private:
         for (Index vertex : _scene.cage.faceVertices) isUsed[vertex] = 1;
         auto const numUnused = std::count(isUsed.begin(), isUsed.end(), 0);
         if (numUnused != 0) {
-            _scan.Refuse(fmt::format("the file ends within this line and leaves {} vertices unused; it "
-                                     "seems cut short",
-                                     numUnused));
+            _scan.Refuse(
+                fmt::format("the file ends within this line and leaves {} vertices unused; it "
+                            "seems cut short",
+                            numUnused));
         }
     }
 
@@ -384,6 +407,8 @@ private:
 
 }  // namespace
 
-void ReadObj(std::string_view text, Scene& scene) { ObjReader(text, scene).Read(); }
+void ReadObj(std::string_view text, Scene& scene) {
+    ObjReader(text, scene).Read();
+}
 
 }  // namespace limn::engine

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/io/off_reader.h"
 
 #include <algorithm>
@@ -20,10 +21,12 @@ public:
         std::string_view const keyword = _scan.Word();
         bool const hasColours = keyword == "COFF";
         if (keyword != "OFF" && !hasColours) {
-            _scan.Refuse(fmt::format("the file starts with {}; OFF or COFF is needed", TextScanner::Quote(keyword)));
+            _scan.Refuse(fmt::format("the file starts with {}; OFF or COFF is needed",
+                                     TextScanner::Quote(keyword)));
         }
         if (_scan.AtEndOfLine()) NextContentLine("the counts");
-        size_t const numVertices = Count("the number of vertices"), numFaces = Count("the number of faces");
+        size_t const numVertices = Count("the number of vertices"),
+                     numFaces = Count("the number of faces");
         if (numFaces == 0) _scan.Refuse("the file has no faces; limn needs polygons");
         CheckRoom(numVertices, numFaces);
         ReadVertices(numVertices, hasColours);
@@ -40,15 +43,18 @@ private:
 
     size_t Count(char const* what) {
         double const count = _scan.Number(what);
-        if (count < 0 || count != std::floor(count) || count > std::numeric_limits<Index>::max() / 4) {
-            _scan.Refuse(fmt::format("{} is {}; 0 to {} are possible", what, count, std::numeric_limits<Index>::max() / 4));
+        if (count < 0 || count != std::floor(count) ||
+            count > std::numeric_limits<Index>::max() / 4) {
+            _scan.Refuse(fmt::format("{} is {}; 0 to {} are possible", what, count,
+                                     std::numeric_limits<Index>::max() / 4));
         }
         return static_cast<size_t>(count);
     }
 
     void CheckRoom(size_t numVertices, size_t numFaces) const {
         if (_scan.GetRest().size() < 2 * (numVertices + numFaces)) {
-            _scan.Refuse(fmt::format("the file is too short for {} vertices and {} faces", numVertices, numFaces));
+            _scan.Refuse(fmt::format("the file is too short for {} vertices and {} faces",
+                                     numVertices, numFaces));
         }
     }
 
@@ -66,13 +72,14 @@ private:
         _scene.cage.numVertices = static_cast<Index>(count);
     }
 
-    /// Colours run from 0 to 1 or, as whole numbers, from 0 to 255; nothing but the numbers tells which. They come
-    /// out from 0 to 1, as the bytes of a PLY do.
+    /// Colours run from 0 to 1 or, as whole numbers, from 0 to 255; nothing but the numbers tells
+    /// which. They come out from 0 to 1, as the bytes of a PLY do.
     static void ScaleColours(std::vector<float>& values) {
         bool const areBytes = std::all_of(values.begin(), values.end(), [](float value) {
             return value >= 0.0f && value <= 255.0f && value == std::floor(value);
         });
-        bool const areShares = std::all_of(values.begin(), values.end(), [](float value) { return value <= 1.0f; });
+        bool const areShares =
+            std::all_of(values.begin(), values.end(), [](float value) { return value <= 1.0f; });
         if (!areBytes || areShares) return;
         for (float& value : values) value = static_cast<float>(value * (1.0 / 255));
     }
@@ -82,11 +89,13 @@ private:
         for (size_t i = 0; i < count; ++i) {
             NextContentLine(fmt::format("face {} of {}", i, count).c_str());
             size_t const size = Count("a face's number of corners");
-            if (size < 3) _scan.Refuse(fmt::format("a face has {} corners; at least 3 are needed", size));
+            if (size < 3)
+                _scan.Refuse(fmt::format("a face has {} corners; at least 3 are needed", size));
             for (size_t k = 0; k < size; ++k) {
                 double const vertex = _scan.Number("a corner's vertex");
                 if (!(vertex >= 0) || vertex >= cage.numVertices || vertex != std::floor(vertex)) {
-                    _scan.Refuse(fmt::format("a face uses vertex {}; 0 to {} are possible", vertex, cage.numVertices - 1));
+                    _scan.Refuse(fmt::format("a face uses vertex {}; 0 to {} are possible", vertex,
+                                             cage.numVertices - 1));
                 }
                 cage.faceVertices.push_back(static_cast<Index>(vertex));
             }
@@ -101,6 +110,8 @@ private:
 
 }  // namespace
 
-void ReadOff(std::string_view text, Scene& scene) { OffReader(text, scene).Read(); }
+void ReadOff(std::string_view text, Scene& scene) {
+    OffReader(text, scene).Read();
+}
 
 }  // namespace limn::engine

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/io/ply_reader.h"
 
 #include <algorithm>
@@ -20,10 +21,11 @@ std::optional<Type> ParseType(std::string_view name) {
         char const *one, *other;
         Type type;
     };
-    constexpr Row kTypes[] = {{"char", "int8", Type::Int8},       {"uchar", "uint8", Type::Uint8},
-                              {"short", "int16", Type::Int16},    {"ushort", "uint16", Type::Uint16},
-                              {"int", "int32", Type::Int32},      {"uint", "uint32", Type::Uint32},
-                              {"float", "float32", Type::Float32}, {"double", "float64", Type::Float64}};
+    constexpr Row kTypes[] = {
+        {"char", "int8", Type::Int8},        {"uchar", "uint8", Type::Uint8},
+        {"short", "int16", Type::Int16},     {"ushort", "uint16", Type::Uint16},
+        {"int", "int32", Type::Int32},       {"uint", "uint32", Type::Uint32},
+        {"float", "float32", Type::Float32}, {"double", "float64", Type::Float64}};
     for (Row const& row : kTypes) {
         if (name == row.one || name == row.other) return row.type;
     }
@@ -50,14 +52,18 @@ struct Element {
 /// Where values come from: words of text, or bytes.
 class PlyReader {
 public:
-    PlyReader(std::string_view bytes, Scene& scene) : _bytes(bytes), _scene(scene), _scan(bytes, scene.path) {}
+    PlyReader(std::string_view bytes, Scene& scene)
+        : _bytes(bytes), _scene(scene), _scan(bytes, scene.path) {}
 
     void Read() {
         ReadHeader();
         for (Element const& element : _elements) {
-            if (element.name == "vertex") ReadVertices(element);
-            else if (element.name == "face") ReadFaces(element);
-            else SkipElement(element);
+            if (element.name == "vertex")
+                ReadVertices(element);
+            else if (element.name == "face")
+                ReadFaces(element);
+            else
+                SkipElement(element);
         }
         Finish();
     }
@@ -67,21 +73,26 @@ private:
 
     [[noreturn]] void Refuse(std::string const& message) const {
         if (_isInBody && _format != Format::Text) {
-            throw Error(ErrorCode::BadMesh, fmt::format("{}: {} {}: {}", _scene.path, _element, _index, message));
+            throw Error(ErrorCode::BadMesh,
+                        fmt::format("{}: {} {}: {}", _scene.path, _element, _index, message));
         }
         _scan.Refuse(message);
     }
 
     void ReadHeader() {
-        if (!_scan.NextLine() || _scan.Word() != "ply") Refuse("the file does not start with 'ply'");
+        if (!_scan.NextLine() || _scan.Word() != "ply")
+            Refuse("the file does not start with 'ply'");
         bool hasFormat = false;
         for (;;) {
             if (!_scan.NextLine()) Refuse("the header has no 'end_header'");
             std::string_view const word = _scan.Word();
             if (word == "end_header") break;
-            if (word == "format") hasFormat = ReadFormat();
-            else if (word == "element") ReadElement();
-            else if (word == "property") ReadProperty();
+            if (word == "format")
+                hasFormat = ReadFormat();
+            else if (word == "element")
+                ReadElement();
+            else if (word == "property")
+                ReadProperty();
             else if (word != "comment" && word != "obj_info" && !word.empty()) {
                 Refuse(fmt::format("{} has no place in a PLY header", TextScanner::Quote(word)));
             }
@@ -93,10 +104,15 @@ private:
 
     bool ReadFormat() {
         std::string_view const word = _scan.Word();
-        if (word == "ascii") _format = Format::Text;
-        else if (word == "binary_little_endian") _format = Format::LittleEndian;
-        else if (word == "binary_big_endian") _format = Format::BigEndian;
-        else Refuse(fmt::format("format {} is not ascii, binary_little_endian or binary_big_endian", TextScanner::Quote(word)));
+        if (word == "ascii")
+            _format = Format::Text;
+        else if (word == "binary_little_endian")
+            _format = Format::LittleEndian;
+        else if (word == "binary_big_endian")
+            _format = Format::BigEndian;
+        else
+            Refuse(fmt::format("format {} is not ascii, binary_little_endian or binary_big_endian",
+                               TextScanner::Quote(word)));
         return true;
     }
 
@@ -104,8 +120,10 @@ private:
         Element element;
         element.name = std::string(_scan.Word());
         double const count = _scan.Number("an element's count");
-        if (count < 0 || count != std::floor(count) || count > std::numeric_limits<Index>::max() / 4) {
-            Refuse(fmt::format("element {} has count {}; 0 to {} are possible", TextScanner::Quote(element.name), count,
+        if (count < 0 || count != std::floor(count) ||
+            count > std::numeric_limits<Index>::max() / 4) {
+            Refuse(fmt::format("element {} has count {}; 0 to {} are possible",
+                               TextScanner::Quote(element.name), count,
                                std::numeric_limits<Index>::max() / 4));
         }
         element.count = static_cast<size_t>(count);
@@ -118,7 +136,8 @@ private:
         std::string_view word = _scan.Word();
         auto const type = [&](std::string_view name) {
             auto const found = ParseType(name);
-            if (!found) Refuse(fmt::format("property type {} is not known", TextScanner::Quote(name)));
+            if (!found)
+                Refuse(fmt::format("property type {} is not known", TextScanner::Quote(name)));
             return *found;
         };
         if (word == "list") {
@@ -138,7 +157,8 @@ private:
         if (_format == Format::Text) {
             do {
                 if (!_scan.NextLine()) {
-                    Refuse(fmt::format("the file ends before {} {} of {}", element.name, index, element.count));
+                    Refuse(fmt::format("the file ends before {} {} of {}", element.name, index,
+                                       element.count));
                 }
             } while (_scan.AtEndOfLine());
         }
@@ -153,14 +173,22 @@ private:
         _at += size;
         if (_format == Format::BigEndian) std::reverse(raw, raw + size);
         switch (type) {
-            case Type::Int8: return As<int8_t>(raw);
-            case Type::Uint8: return As<uint8_t>(raw);
-            case Type::Int16: return As<int16_t>(raw);
-            case Type::Uint16: return As<uint16_t>(raw);
-            case Type::Int32: return As<int32_t>(raw);
-            case Type::Uint32: return As<uint32_t>(raw);
-            case Type::Float32: return As<float>(raw);
-            case Type::Float64: return As<double>(raw);
+            case Type::Int8:
+                return As<int8_t>(raw);
+            case Type::Uint8:
+                return As<uint8_t>(raw);
+            case Type::Int16:
+                return As<int16_t>(raw);
+            case Type::Uint16:
+                return As<uint16_t>(raw);
+            case Type::Int32:
+                return As<int32_t>(raw);
+            case Type::Uint32:
+                return As<uint32_t>(raw);
+            case Type::Float32:
+                return As<float>(raw);
+            case Type::Float64:
+                return As<double>(raw);
         }
         return 0.0;
     }
@@ -179,7 +207,8 @@ private:
         }
         if (_format != Format::Text && count * static_cast<double>(SizeOf(property.type)) >
                                            static_cast<double>(_bytes.size() - _at)) {
-            Refuse(fmt::format("list '{}' of length {} goes beyond the end of the file", property.name, count));
+            Refuse(fmt::format("list '{}' of length {} goes beyond the end of the file",
+                               property.name, count));
         }
         return static_cast<size_t>(count);
     }
@@ -223,7 +252,9 @@ private:
         for (int c = 0; c < 4; ++c) {
             if (name != kColours[c] || !(has("red") && has("green") && has("blue"))) continue;
             size_t const primvar = FindPrimvar("color", has("alpha") ? 4 : 3);
-            double const scale = property.type == Type::Uint8 ? 1.0 / 255 : property.type == Type::Uint16 ? 1.0 / 65535 : 1.0;
+            double const scale = property.type == Type::Uint8    ? 1.0 / 255
+                                 : property.type == Type::Uint16 ? 1.0 / 65535
+                                                                 : 1.0;
             return {Target::Value, c, primvar, scale};
         }
         return {Target::Value, 0, FindPrimvar(name, 1)};
@@ -233,7 +264,8 @@ private:
         for (size_t i = 0; i < _scene.primvars.size(); ++i) {
             if (_scene.primvars[i].name != name) continue;
             if (_scene.primvars[i].numChannels == numChannels) return i;
-            Refuse(fmt::format("two vertex properties both make the primvar '{}'; rename one", name));
+            Refuse(
+                fmt::format("two vertex properties both make the primvar '{}'; rename one", name));
         }
         _scene.primvars.push_back({name, numChannels, {}});
         return _scene.primvars.size() - 1;
@@ -255,7 +287,8 @@ private:
         }
         for (size_t i = 0; i < element.count; ++i) {
             BeginRow(element, i);
-            for (size_t p = 0; p < targets.size(); ++p) ReadVertexValue(element.properties[p], targets[p], i);
+            for (size_t p = 0; p < targets.size(); ++p)
+                ReadVertexValue(element.properties[p], targets[p], i);
         }
         _scene.cage.numVertices = static_cast<Index>(element.count);
     }
@@ -266,8 +299,8 @@ private:
             double const value = ReadValue(property.type, property.name.c_str());
             size_t const channel = static_cast<size_t>(target.channel);
             if (target.kind != Target::Nowhere && !(std::abs(value) <= TextScanner::kLargest)) {
-                Refuse(fmt::format("property '{}' is {}; a number up to {:g} is needed", property.name, value,
-                                   TextScanner::kLargest));
+                Refuse(fmt::format("property '{}' is {}; a number up to {:g} is needed",
+                                   property.name, value, TextScanner::kLargest));
             }
             if (target.kind == Target::Position) _scene.positions[3 * vertex + channel] = value;
             if (target.kind == Target::Texture) _scene.uvs[2 * vertex + channel] = value;
@@ -280,26 +313,35 @@ private:
     }
 
     static bool IsIndexList(Property const& property) {
-        return property.countType && (property.name == "vertex_indices" || property.name == "vertex_index");
+        return property.countType &&
+               (property.name == "vertex_indices" || property.name == "vertex_index");
     }
 
     /// A count in a header is a claim; what it needs at least must be in the file.
     void CheckRoom(Element const& element) const {
-        size_t rowSize = 0;  // least bytes of a row: a digit and a space per word, or the sizes of the types
+        size_t rowSize =
+            0;  // least bytes of a row: a digit and a space per word, or the sizes of the types
         for (Property const& property : element.properties) {
             bool const isText = _format == Format::Text;
-            rowSize += isText ? 2 : SizeOf(property.countType ? *property.countType : property.type);
+            rowSize +=
+                isText ? 2 : SizeOf(property.countType ? *property.countType : property.type);
         }
-        size_t const rest = _format == Format::Text ? _scan.GetRest().size() + 1 : _bytes.size() - _at;
+        size_t const rest =
+            _format == Format::Text ? _scan.GetRest().size() + 1 : _bytes.size() - _at;
         if (rowSize == 0 ? element.count > 0 : rest / rowSize < element.count) {
-            Refuse(fmt::format("the file is too short for {} of element '{}'", element.count, element.name));
+            Refuse(fmt::format("the file is too short for {} of element '{}'", element.count,
+                               element.name));
         }
     }
 
     void ReadFaces(Element const& element) {
-        auto const numLists = std::count_if(element.properties.begin(), element.properties.end(), IsIndexList);
-        if (numLists != 1) Refuse(fmt::format("element face has {} lists 'vertex_indices'; one is needed", numLists));
-        if (_scene.positions.empty()) Refuse("the faces stand before the vertices, or there are no vertices");
+        auto const numLists =
+            std::count_if(element.properties.begin(), element.properties.end(), IsIndexList);
+        if (numLists != 1)
+            Refuse(
+                fmt::format("element face has {} lists 'vertex_indices'; one is needed", numLists));
+        if (_scene.positions.empty())
+            Refuse("the faces stand before the vertices, or there are no vertices");
         CheckRoom(element);
         auto& cage = _scene.cage;
         for (size_t i = 0; i < element.count; ++i) {
@@ -326,14 +368,16 @@ private:
 
     Index CheckIndex(double value) const {
         if (!(value >= 0) || value >= _scene.cage.numVertices || value != std::floor(value)) {
-            Refuse(fmt::format("a face uses vertex {}; 0 to {} are possible", value, _scene.cage.numVertices - 1));
+            Refuse(fmt::format("a face uses vertex {}; 0 to {} are possible", value,
+                               _scene.cage.numVertices - 1));
         }
         return static_cast<Index>(value);
     }
 
     double CheckFinite(double value) const {
         if (!(std::abs(value) <= TextScanner::kLargest)) {
-            Refuse(fmt::format("a texture coordinate is {}; a number up to {:g} is needed", value, TextScanner::kLargest));
+            Refuse(fmt::format("a texture coordinate is {}; a number up to {:g} is needed", value,
+                               TextScanner::kLargest));
         }
         return value;
     }
@@ -345,7 +389,8 @@ private:
             return;
         }
         if (texcoords.size() != 2 * size) {
-            Refuse(fmt::format("list 'texcoord' has {} numbers; {} are needed", texcoords.size(), 2 * size));
+            Refuse(fmt::format("list 'texcoord' has {} numbers; {} are needed", texcoords.size(),
+                               2 * size));
         }
         _cornerUVs.insert(_cornerUVs.end(), texcoords.begin(), texcoords.end());
     }
@@ -353,11 +398,13 @@ private:
     void Finish() {
         auto& cage = _scene.cage;
         if (cage.faceSizes.empty()) {
-            throw Error(ErrorCode::BadMesh, fmt::format("{}: the file has no faces; limn needs polygons", _scene.path));
+            throw Error(ErrorCode::BadMesh,
+                        fmt::format("{}: the file has no faces; limn needs polygons", _scene.path));
         }
         if (!_cornerUVs.empty() && _numFacesWithoutUVs != 0) {
-            _scene.warnings.push_back(fmt::format("{}: {} of {} faces have no 'texcoord', so those of the others are not used",
-                                                  _scene.path, _numFacesWithoutUVs, cage.faceSizes.size()));
+            _scene.warnings.push_back(fmt::format(
+                "{}: {} of {} faces have no 'texcoord', so those of the others are not used",
+                _scene.path, _numFacesWithoutUVs, cage.faceSizes.size()));
         }
         if (!_cornerUVs.empty() && _numFacesWithoutUVs == 0) {
             MergeCornerUVs();
@@ -371,7 +418,8 @@ private:
         std::vector<Index> order(cage.faceVertices.size());
         for (size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Index>(i);
         auto const key = [&](Index corner) {
-            return std::tuple(cage.faceVertices[corner], _cornerUVs[2 * corner], _cornerUVs[2 * corner + 1], corner);
+            return std::tuple(cage.faceVertices[corner], _cornerUVs[2 * corner],
+                              _cornerUVs[2 * corner + 1], corner);
         };
         std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) < key(b); });
         far_ext::FVarChannel channel;
@@ -379,7 +427,8 @@ private:
         _scene.uvs.clear();
         for (size_t i = 0; i < order.size(); ++i) {
             auto const same = [&](Index a, Index b) {
-                return cage.faceVertices[a] == cage.faceVertices[b] && _cornerUVs[2 * a] == _cornerUVs[2 * b] &&
+                return cage.faceVertices[a] == cage.faceVertices[b] &&
+                       _cornerUVs[2 * a] == _cornerUVs[2 * b] &&
                        _cornerUVs[2 * a + 1] == _cornerUVs[2 * b + 1];
             };
             if (i == 0 || !same(order[i - 1], order[i])) {
@@ -405,6 +454,8 @@ private:
 
 }  // namespace
 
-void ReadPly(std::string_view bytes, Scene& scene) { PlyReader(bytes, scene).Read(); }
+void ReadPly(std::string_view bytes, Scene& scene) {
+    PlyReader(bytes, scene).Read();
+}
 
 }  // namespace limn::engine

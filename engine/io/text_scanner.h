@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <charconv>
@@ -18,7 +19,8 @@ class TextScanner {
 public:
     TextScanner(std::string_view text, std::string const& path) : _rest(text), _path(path) {}
 
-    /// Moves to the next line that exists; false at the end. A CR before the end of line is dropped.
+    /// Moves to the next line that exists; false at the end. A CR before the end of line is
+    /// dropped.
     bool NextLine() {
         if (_rest.empty()) return false;
         ++_lineNumber;
@@ -103,8 +105,10 @@ private:
     [[noreturn]] void RefuseNumber(char const* what, std::errc code, double value) {
         std::string_view const word = Word();
         if (word.empty()) Refuse(fmt::format("{} is missing", what));
-        if (code == std::errc::result_out_of_range || (code == std::errc() && std::isfinite(value) && std::abs(value) > kLargest)) {
-            Refuse(fmt::format("{} is {}; at most {:g} in magnitude is possible", what, Quote(word), kLargest));
+        if (code == std::errc::result_out_of_range ||
+            (code == std::errc() && std::isfinite(value) && std::abs(value) > kLargest)) {
+            Refuse(fmt::format("{} is {}; at most {:g} in magnitude is possible", what, Quote(word),
+                               kLargest));
         }
         Refuse(fmt::format("{} is {}; a finite number is needed", what, Quote(word)));
     }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/measure/measure.h"
 
 #include <algorithm>
@@ -60,7 +61,8 @@ struct Sums {
     }
 };
 
-CurvatureStatistics MakeStatistics(Sums const& sums, double sum, double squares, double min, double max) {
+CurvatureStatistics MakeStatistics(Sums const& sums, double sum, double squares, double min,
+                                   double max) {
     if (sums.count == 0 || !(sums.area > 0.0)) return {};
     double const mean = sum / sums.area;
     return {min, max, mean, std::sqrt(std::max(0.0, squares / sums.area - mean * mean))};
@@ -94,23 +96,28 @@ std::vector<Sums> Surveyor::SurveyLimit() const {
     eval::LimitSurface const surface(_refiner);
     eval::GradedPoints const points(surface);
     std::vector<Sums> ofFaces(_components.ofFace.size());
-    tbb::enumerable_thread_specific<eval::FaceTree> trees([&] { return eval::FaceTree(surface, _scene.positions, 3); });
-    tbb::parallel_for(tbb::blocked_range<Index>(0, surface.GetNumFaces(), 64), [&](auto const& faces) {
-        CheckInterrupted();
-        eval::FaceTree& tree = trees.local();
-        for (Index face = faces.begin(); face < faces.end(); ++face) {
-            if (!surface.HasLimit(face)) continue;
-            tree.Bind(face);
-            points.ForEach(face, [&](eval::FacePlace const& place, double weight) {
-                auto const x = eval::EvaluateSample(tree, place.domain, place.s, place.t, _orientation);
-                double const area = weight * x.tangentS.cross(x.tangentT).norm();
-                ofFaces[face].volume += area * x.position.dot(x.normal) / 3.0;
-                if (area > 0.0 && !x.isDegenerate) ofFaces[face].AddCurvature(area, x.curvature.k1, x.curvature.k2);
-            });
-        }
-    });
+    tbb::enumerable_thread_specific<eval::FaceTree> trees(
+        [&] { return eval::FaceTree(surface, _scene.positions, 3); });
+    tbb::parallel_for(
+        tbb::blocked_range<Index>(0, surface.GetNumFaces(), 64), [&](auto const& faces) {
+            CheckInterrupted();
+            eval::FaceTree& tree = trees.local();
+            for (Index face = faces.begin(); face < faces.end(); ++face) {
+                if (!surface.HasLimit(face)) continue;
+                tree.Bind(face);
+                points.ForEach(face, [&](eval::FacePlace const& place, double weight) {
+                    auto const x =
+                        eval::EvaluateSample(tree, place.domain, place.s, place.t, _orientation);
+                    double const area = weight * x.tangentS.cross(x.tangentT).norm();
+                    ofFaces[face].volume += area * x.position.dot(x.normal) / 3.0;
+                    if (area > 0.0 && !x.isDegenerate)
+                        ofFaces[face].AddCurvature(area, x.curvature.k1, x.curvature.k2);
+                });
+            }
+        });
     std::vector<Sums> ofComponents(static_cast<size_t>(_components.count));
-    for (size_t face = 0; face < ofFaces.size(); ++face) ofComponents[_components.ofFace[face]].Add(ofFaces[face]);
+    for (size_t face = 0; face < ofFaces.size(); ++face)
+        ofComponents[_components.ofFace[face]].Add(ofFaces[face]);
     return ofComponents;
 }
 
@@ -143,20 +150,25 @@ std::vector<std::string> Surveyor::FindReasons(MeasuredSurface surface) const {
     for (Index face = 0; face < _level.GetNumFaces(); ++face) {
         std::string& reason = reasons[_components.ofFace[face]];
         if (!reason.empty()) continue;
-        if (isLimit && _scene.cage.scheme == Sdc::SCHEME_BILINEAR) reason = "a bilinear surface has a crease along every edge";
+        if (isLimit && _scene.cage.scheme == Sdc::SCHEME_BILINEAR)
+            reason = "a bilinear surface has a crease along every edge";
         if (isLimit && _level.IsFaceHole(face)) reason = "it has a hole";
         for (Index edge : _level.GetFaceEdges(face)) {
-            if (_level.GetEdgeFaces(edge).size() != 2) reason = "it is not closed";
-            else if (isLimit && _level.IsEdgeInfSharp(edge)) reason = "it has infinitely sharp creases";
+            if (_level.GetEdgeFaces(edge).size() != 2)
+                reason = "it is not closed";
+            else if (isLimit && _level.IsEdgeInfSharp(edge))
+                reason = "it has infinitely sharp creases";
         }
         for (Index vertex : _level.GetFaceVertices(face)) {
-            if (isLimit && reason.empty() && _level.IsVertexInfSharp(vertex)) reason = "it has infinitely sharp corners";
+            if (isLimit && reason.empty() && _level.IsVertexInfSharp(vertex))
+                reason = "it has infinitely sharp corners";
         }
     }
     return reasons;
 }
 
-Measurement Surveyor::Conclude(std::vector<Sums> const& ofComponents, MeasuredSurface surface) const {
+Measurement Surveyor::Conclude(std::vector<Sums> const& ofComponents,
+                               MeasuredSurface surface) const {
     Measurement result;
     auto const reasons = FindReasons(surface);
     auto const euler = _components.FindEulerCharacteristics(_level);
@@ -168,30 +180,35 @@ Measurement Surveyor::Conclude(std::vector<Sums> const& ofComponents, MeasuredSu
         audit.component = static_cast<int>(c);
         audit.integral = sums.gaussian;
         audit.expected = 2.0 * kPi * euler[c];
-        audit.relativeError = std::abs(audit.integral - audit.expected) / std::max(2.0 * kPi, sums.gaussianMagnitude);
+        audit.relativeError =
+            std::abs(audit.integral - audit.expected) / std::max(2.0 * kPi, sums.gaussianMagnitude);
         audit.reason = reasons[c];
         audit.wasAudited = audit.reason.empty();
         result.gaussBonnet.push_back(std::move(audit));
         result.eulerCharacteristic += euler[c];
     }
     bool isClosed = true;
-    for (Index edge = 0; edge < _level.GetNumEdges(); ++edge) isClosed &= _level.GetEdgeFaces(edge).size() == 2;
+    for (Index edge = 0; edge < _level.GetNumEdges(); ++edge)
+        isClosed &= _level.GetEdgeFaces(edge).size() == 2;
     if (isClosed && _scene.cage.holes.empty()) result.volume = all.volume;
     result.area = all.area;
     if (surface == MeasuredSurface::Mesh) {  // boundary vertices have area, too
         auto const normals = eval::FindFaceNormals(_level, _scene.positions);
         result.area = 0.0;
-        for (size_t i = 0; i < normals.size(); i += 3) result.area += std::hypot(normals[i], normals[i + 1], normals[i + 2]);
+        for (size_t i = 0; i < normals.size(); i += 3)
+            result.area += std::hypot(normals[i], normals[i + 1], normals[i + 2]);
     }
     result.energy = {all.area > 0.0 ? all.bending / all.area : 0.0, all.bending};
     result.mean = MakeStatistics(all, all.mean, all.meanSquares, all.minMean, all.maxMean);
-    result.gaussian = MakeStatistics(all, all.gaussian, all.gaussianSquares, all.minGaussian, all.maxGaussian);
+    result.gaussian =
+        MakeStatistics(all, all.gaussian, all.gaussianSquares, all.minGaussian, all.maxGaussian);
     result.numSamples = all.count;
     return result;
 }
 
 /// k1 and k2 of every vertex, exact ones of the limit.
-std::array<std::vector<double>, 2> FindLimitCurvature(Scene const& scene, Far::TopologyRefiner const& refiner,
+std::array<std::vector<double>, 2> FindLimitCurvature(Scene const& scene,
+                                                      Far::TopologyRefiner const& refiner,
                                                       double orientation) {
     eval::LimitSurface const surface(refiner);
     eval::FaceTree tree(surface, scene.positions, 3);
@@ -216,22 +233,26 @@ std::array<std::vector<double>, 2> FindLimitCurvature(Scene const& scene, Far::T
 
 }  // namespace
 
-Measurement Measure(Scene const& scene, Far::TopologyRefiner const& refiner, MeasuredSurface surface, double orientation) {
+Measurement Measure(Scene const& scene, Far::TopologyRefiner const& refiner,
+                    MeasuredSurface surface, double orientation) {
     Surveyor const surveyor(scene, refiner, orientation);
     bool const isLimit = surface == MeasuredSurface::Limit;
     return surveyor.Conclude(isLimit ? surveyor.SurveyLimit() : surveyor.SurveyMesh(), surface);
 }
 
-Scene AddVertexCurvature(Scene const& scene, Far::TopologyRefiner const& refiner, MeasuredSurface surface, double orientation) {
+Scene AddVertexCurvature(Scene const& scene, Far::TopologyRefiner const& refiner,
+                         MeasuredSurface surface, double orientation) {
     std::array<std::vector<double>, 2> k;
     if (surface == MeasuredSurface::Limit) {
         k = FindLimitCurvature(scene, refiner, orientation);
     } else {
-        auto curvature = eval::MeasureMeshCurvature(refiner.GetLevel(0), scene.positions, orientation);
+        auto curvature =
+            eval::MeasureMeshCurvature(refiner.GetLevel(0), scene.positions, orientation);
         k = {std::move(curvature.k1), std::move(curvature.k2)};
     }
     Scene result = scene;
-    for (char const* name : {"mean", "gaussian", "k1", "k2"}) result.primvars.push_back({name, 1, {}});
+    for (char const* name : {"mean", "gaussian", "k1", "k2"})
+        result.primvars.push_back({name, 1, {}});
     auto* const added = &*(result.primvars.end() - 4);
     for (size_t v = 0; v < k[0].size(); ++v) {
         double const values[] = {0.5 * (k[0][v] + k[1][v]), k[0][v] * k[1][v], k[0][v], k[1][v]};

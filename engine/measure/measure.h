@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <optional>
@@ -17,8 +18,8 @@ enum class MeasuredSurface {
     Mesh    ///< the mesh itself, by the tensor of its dihedral angles
 };
 
-/// Of a curvature, weighted by area. Extremes are those of the sampled places: curvature may be unbounded next to
-/// extraordinary vertices.
+/// Of a curvature, weighted by area. Extremes are those of the sampled places: curvature may be
+/// unbounded next to extraordinary vertices.
 struct CurvatureStatistics {
     double min = 0.0, max = 0.0, mean = 0.0, stddev = 0.0;
 };
@@ -29,15 +30,18 @@ struct Measurement {
     int eulerCharacteristic = 0;
     eval::ThinPlateEnergy energy;
     CurvatureStatistics mean, gaussian;
-    size_t numSamples = 0;  ///< places that statistics and integrals come from
+    size_t numSamples = 0;                      ///< places that statistics and integrals come from
     std::vector<GaussBonnetAudit> gaussBonnet;  ///< per component, as a bake's audit numbers them
 };
 
 /// \param orientation  +1, or -1 to turn the outside round
 /// \throws Interrupted
-Measurement Measure(Scene const& scene, Far::TopologyRefiner const& refiner, MeasuredSurface surface, double orientation);
+Measurement Measure(Scene const& scene, Far::TopologyRefiner const& refiner,
+                    MeasuredSurface surface, double orientation);
 
-/// The scene with curvature per vertex as primvars mean, gaussian, k1 and k2; 0 where there is none.
-Scene AddVertexCurvature(Scene const& scene, Far::TopologyRefiner const& refiner, MeasuredSurface surface, double orientation);
+/// The scene with curvature per vertex as primvars mean, gaussian, k1 and k2; 0 where there is
+/// none.
+Scene AddVertexCurvature(Scene const& scene, Far::TopologyRefiner const& refiner,
+                         MeasuredSurface surface, double orientation);
 
 }  // namespace limn::engine

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/measure/mesh_picture.h"
 
 #include <algorithm>
@@ -42,14 +43,17 @@ public:
     void Draw(Shade const& shade) {
         size_t corner = 0;
         for (int size : _scene.cage.faceSizes) {
-            auto const at = [&](int i) { return _scene.cage.faceVertices[corner + static_cast<size_t>(i)]; };
+            auto const at = [&](int i) {
+                return _scene.cage.faceVertices[corner + static_cast<size_t>(i)];
+            };
             for (int i = 1; i + 1 < size; ++i) DrawTriangle({at(0), at(i), at(i + 1)}, shade);
             corner += static_cast<size_t>(size);
         }
     }
 
     void Write(std::string const& path, bool isSigned) const {
-        Map map{MapKind::Primvar, "picture", {"V"}, Averaging::Plain, isSigned, "", eval::Quantity{}, 0};
+        Map map{MapKind::Primvar, "picture", {"V"}, Averaging::Plain, isSigned, "",
+                eval::Quantity{}, 0};
         PreviewBuilder preview(map, 0, _size, _size);
         std::vector<uint8_t> const isFilled(static_cast<size_t>(_size), 1);
         for (int row = 0; row < _size; ++row) {
@@ -59,23 +63,30 @@ public:
         WritePng(path, preview.Draw());
     }
 
-    /// Draws an arrow round each of some vertices that are seen, no two nearer than `spacing` pixels.
+    /// Draws an arrow round each of some vertices that are seen, no two nearer than `spacing`
+    /// pixels.
     void DrawArrows(std::vector<std::array<double, 3>> const& vectors, double spacing) {
         double longest = 0.0;
-        for (auto const& vector : vectors) longest = std::max(longest, Vector(vector.data()).norm());
+        for (auto const& vector : vectors)
+            longest = std::max(longest, Vector(vector.data()).norm());
         std::vector<char> isTaken(NumPixels(), 0);
         int const reach = static_cast<int>(spacing);
         for (Index vertex = 0; vertex < _scene.cage.numVertices; ++vertex) {
-            Vector const direction(vectors[static_cast<size_t>(vertex)].data()), place = Project(vertex);
+            Vector const direction(vectors[static_cast<size_t>(vertex)].data()),
+                place = Project(vertex);
             int const x = static_cast<int>(place.x()), y = static_cast<int>(place.y());
-            if (!(direction.norm() > 1e-6 * longest) || !IsSeen(place, 2.0 / _scale) || isTaken[At(x, y)]) continue;
+            if (!(direction.norm() > 1e-6 * longest) || !IsSeen(place, 2.0 / _scale) ||
+                isTaken[At(x, y)])
+                continue;
             for (int dy = -reach; dy <= reach; ++dy) {
                 for (int dx = -reach; dx <= reach; ++dx) {
-                    if (IsInside(x + dx, y + dy) && dx * dx + dy * dy < spacing * spacing) isTaken[At(x + dx, y + dy)] = 1;
+                    if (IsInside(x + dx, y + dy) && dx * dx + dy * dy < spacing * spacing)
+                        isTaken[At(x + dx, y + dy)] = 1;
                 }
             }
             Vector const flat = direction.normalized();
-            DrawArrow({place.x(), place.y()}, 0.8 * spacing * Eigen::Vector2d(flat.dot(_right), -flat.dot(_up)));
+            DrawArrow({place.x(), place.y()},
+                      0.8 * spacing * Eigen::Vector2d(flat.dot(_right), -flat.dot(_up)));
         }
     }
 
@@ -83,7 +94,10 @@ public:
     void WriteGrey(std::string const& path) const {
         PreviewBuilder::Picture picture{_size, _size, std::vector<uint8_t>(3 * NumPixels(), 38)};
         for (size_t pixel = 0; pixel < NumPixels(); ++pixel) {
-            if (_coverage[pixel] > 0.0f) std::fill_n(&picture.pixels[3 * pixel], 3, static_cast<uint8_t>(255.0f * std::clamp(_values[pixel], 0.0f, 1.0f) + 0.5f));
+            if (_coverage[pixel] > 0.0f)
+                std::fill_n(
+                    &picture.pixels[3 * pixel], 3,
+                    static_cast<uint8_t>(255.0f * std::clamp(_values[pixel], 0.0f, 1.0f) + 0.5f));
         }
         WritePng(path, picture);
     }
@@ -94,7 +108,9 @@ public:
 
 private:
     size_t NumPixels() const { return static_cast<size_t>(_size) * static_cast<size_t>(_size); }
-    Vector PointOf(Index vertex) const { return Vector(&_scene.positions[3 * static_cast<size_t>(vertex)]); }
+    Vector PointOf(Index vertex) const {
+        return Vector(&_scene.positions[3 * static_cast<size_t>(vertex)]);
+    }
 
     void FitToPicture() {
         Eigen::AlignedBox2d box;
@@ -114,7 +130,9 @@ private:
     }
 
     bool IsInside(int x, int y) const { return x >= 0 && y >= 0 && x < _size && y < _size; }
-    size_t At(int x, int y) const { return static_cast<size_t>(y) * static_cast<size_t>(_size) + static_cast<size_t>(x); }
+    size_t At(int x, int y) const {
+        return static_cast<size_t>(y) * static_cast<size_t>(_size) + static_cast<size_t>(x);
+    }
 
     bool IsSeen(Vector const& place, double slack) const {
         int const x = static_cast<int>(place.x()), y = static_cast<int>(place.y());
@@ -127,7 +145,8 @@ private:
         for (int i = 0; i <= count; ++i) {
             Eigen::Vector2d const p = from + step * i / std::max(1, count);
             for (int corner = 0; corner < 4; ++corner) {
-                int const x = static_cast<int>(std::floor(p.x() - 0.5)) + corner % 2, y = static_cast<int>(std::floor(p.y() - 0.5)) + corner / 2;
+                int const x = static_cast<int>(std::floor(p.x() - 0.5)) + corner % 2,
+                          y = static_cast<int>(std::floor(p.y() - 0.5)) + corner / 2;
                 if (IsInside(x, y) && _coverage[At(x, y)] > 0.0f) _values[At(x, y)] = 0.0f;
             }
         }
@@ -145,17 +164,26 @@ private:
         Vector const a = Project(corners[0]), b = Project(corners[1]), c = Project(corners[2]);
         double const area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
         if (!(std::abs(area) > 0.0)) return;
-        auto const first = [&](double low) { return std::max(0, static_cast<int>(std::ceil(low - 0.5))); };
-        auto const last = [&](double high) { return std::min(_size - 1, static_cast<int>(std::floor(high - 0.5))); };
-        for (int y = first(std::min({a.y(), b.y(), c.y()})); y <= last(std::max({a.y(), b.y(), c.y()})); ++y) {
-            for (int x = first(std::min({a.x(), b.x(), c.x()})); x <= last(std::max({a.x(), b.x(), c.x()})); ++x) {
+        auto const first = [&](double low) {
+            return std::max(0, static_cast<int>(std::ceil(low - 0.5)));
+        };
+        auto const last = [&](double high) {
+            return std::min(_size - 1, static_cast<int>(std::floor(high - 0.5)));
+        };
+        for (int y = first(std::min({a.y(), b.y(), c.y()}));
+             y <= last(std::max({a.y(), b.y(), c.y()})); ++y) {
+            for (int x = first(std::min({a.x(), b.x(), c.x()}));
+                 x <= last(std::max({a.x(), b.x(), c.x()})); ++x) {
                 double const px = x + 0.5, py = y + 0.5;
-                double const wb = ((px - a.x()) * (c.y() - a.y()) - (py - a.y()) * (c.x() - a.x())) / area;
-                double const wc = ((b.x() - a.x()) * (py - a.y()) - (b.y() - a.y()) * (px - a.x())) / area;
+                double const wb =
+                    ((px - a.x()) * (c.y() - a.y()) - (py - a.y()) * (c.x() - a.x())) / area;
+                double const wc =
+                    ((b.x() - a.x()) * (py - a.y()) - (b.y() - a.y()) * (px - a.x())) / area;
                 Vector const weights(1.0 - wb - wc, wb, wc);
                 if (weights.minCoeff() < -1e-9) continue;
                 double const depth = weights.dot(Vector(a.z(), b.z(), c.z()));
-                size_t const pixel = static_cast<size_t>(y) * static_cast<size_t>(_size) + static_cast<size_t>(x);
+                size_t const pixel =
+                    static_cast<size_t>(y) * static_cast<size_t>(_size) + static_cast<size_t>(x);
                 if (!(depth > _depth[pixel])) continue;
                 _depth[pixel] = depth;
                 _coverage[pixel] = 1.0f;
@@ -173,22 +201,30 @@ private:
     double _scale = 1.0;
 };
 
-Vector BlendNormal(std::vector<double> const& normals, Vector const& weights, std::array<Index, 3> const& corners) {
+Vector BlendNormal(std::vector<double> const& normals, Vector const& weights,
+                   std::array<Index, 3> const& corners) {
     Vector normal = Vector::Zero();
-    for (int k = 0; k < 3; ++k) normal += weights[k] * Vector(&normals[3 * static_cast<size_t>(corners[static_cast<size_t>(k)])]);
+    for (int k = 0; k < 3; ++k)
+        normal +=
+            weights[k] * Vector(&normals[3 * static_cast<size_t>(corners[static_cast<size_t>(k)])]);
     return normal.normalized();
 }
 
 }  // namespace
 
-void WriteValuePicture(std::string const& path, Scene const& scene, std::string const& primvar, PictureView const& view) {
-    auto const found = std::find_if(scene.primvars.begin(), scene.primvars.end(),
-                                    [&](Primvar const& p) { return p.name == primvar && p.numChannels == 1; });
-    if (found == scene.primvars.end()) throw Error(ErrorCode::BadOption, fmt::format("the mesh has no scalar '{}'", primvar));
+void WriteValuePicture(std::string const& path, Scene const& scene, std::string const& primvar,
+                       PictureView const& view) {
+    auto const found =
+        std::find_if(scene.primvars.begin(), scene.primvars.end(),
+                     [&](Primvar const& p) { return p.name == primvar && p.numChannels == 1; });
+    if (found == scene.primvars.end())
+        throw Error(ErrorCode::BadOption, fmt::format("the mesh has no scalar '{}'", primvar));
     MeshPicture picture(scene, view);
     picture.Draw([&](Vector const& weights, std::array<Index, 3> const& corners) {
         double value = 0.0;
-        for (int k = 0; k < 3; ++k) value += weights[k] * static_cast<double>(found->values[corners[static_cast<size_t>(k)]]);
+        for (int k = 0; k < 3; ++k)
+            value +=
+                weights[k] * static_cast<double>(found->values[corners[static_cast<size_t>(k)]]);
         return value;
     });
     picture.Write(path, true);
@@ -197,10 +233,15 @@ void WriteValuePicture(std::string const& path, Scene const& scene, std::string 
 void WriteShadedPicture(std::string const& path, Scene const& scene, PictureView const& view) {
     MeshPicture picture(scene, view);
     // A light above the eye's right shoulder; what it does not reach is not black.
-    Vector const eye = picture.GetDirectionToEye(), light = (eye + 0.5 * picture.GetUp() + 0.4 * picture.GetUp().cross(eye)).normalized();
-    auto const at = [&](Index vertex) { return Vector(&scene.positions[3 * static_cast<size_t>(vertex)]); };
+    Vector const eye = picture.GetDirectionToEye(),
+                 light =
+                     (eye + 0.5 * picture.GetUp() + 0.4 * picture.GetUp().cross(eye)).normalized();
+    auto const at = [&](Index vertex) {
+        return Vector(&scene.positions[3 * static_cast<size_t>(vertex)]);
+    };
     picture.Draw([&](Vector const&, std::array<Index, 3> const& corners) {
-        Vector normal = (at(corners[1]) - at(corners[0])).cross(at(corners[2]) - at(corners[0])).normalized();
+        Vector normal =
+            (at(corners[1]) - at(corners[0])).cross(at(corners[2]) - at(corners[0])).normalized();
         if (normal.dot(eye) < 0.0) normal = -normal;
         return 0.25 + 0.7 * std::max(0.0, normal.dot(light));
     });
@@ -215,20 +256,25 @@ void WriteHighlightPicture(std::string const& path, Scene const& scene, PictureV
     picture.Draw([&](Vector const& weights, std::array<Index, 3> const& corners) {
         Vector const normal = BlendNormal(normals, weights, corners);
         // Strip lights far away, side by side: the reflected ray's height tells which one is met.
-        Vector const ray = 2.0 * normal.dot(picture.GetDirectionToEye()) * normal - picture.GetDirectionToEye();
-        double const height = std::asin(std::clamp(ray.dot(picture.GetUp()), -1.0, 1.0)) / std::acos(-1.0);
+        Vector const ray =
+            2.0 * normal.dot(picture.GetDirectionToEye()) * normal - picture.GetDirectionToEye();
+        double const height =
+            std::asin(std::clamp(ray.dot(picture.GetUp()), -1.0, 1.0)) / std::acos(-1.0);
         double const wave = std::cos(2.0 * std::acos(-1.0) * kStripes * height);
         return std::clamp(0.5 + 2.0 * wave, 0.0, 1.0);
     });
     picture.Write(path, false);
 }
 
-void WriteArrowPicture(std::string const& path, Scene const& scene, std::vector<std::array<double, 3>> const& vectors, PictureView const& view) {
+void WriteArrowPicture(std::string const& path, Scene const& scene,
+                       std::vector<std::array<double, 3>> const& vectors, PictureView const& view) {
     auto const refiner = far_ext::CreateRefiner(scene.cage);
     auto const normals = eval::FindAngleNormals(refiner->GetLevel(0), scene.positions);
     MeshPicture picture(scene, view);
     picture.Draw([&](Vector const& weights, std::array<Index, 3> const& corners) {
-        return 0.4 + 0.6 * std::abs(BlendNormal(normals, weights, corners).dot(picture.GetDirectionToEye()));
+        return 0.4 +
+               0.6 * std::abs(
+                         BlendNormal(normals, weights, corners).dot(picture.GetDirectionToEye()));
     });
     picture.DrawArrows(vectors, view.size / 32.0);
     picture.WriteGrey(path);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/noise/surface_noise.h"
 
 #include <algorithm>
@@ -7,10 +8,10 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "engine/scene/job.h"
 #include "engine/noise/gradient_noise.h"
-#include "eval/fit/interpolate.h"
+#include "engine/scene/job.h"
 #include "eval/differential/refine_values.h"
+#include "eval/fit/interpolate.h"
 #include "eval/surface/surface_sample.h"
 #include "far_ext/error.h"
 #include "far_ext/topology/refined_cage.h"
@@ -27,7 +28,8 @@ double FindFrequency(Far::TopologyLevel const& level, std::span<double const> po
         auto const ends = level.GetEdgeVertices(edge);
         double square = 0.0;
         for (size_t c = 0; c < 3; ++c) {
-            double const d = positions[3 * static_cast<size_t>(ends[0]) + c] - positions[3 * static_cast<size_t>(ends[1]) + c];
+            double const d = positions[3 * static_cast<size_t>(ends[0]) + c] -
+                             positions[3 * static_cast<size_t>(ends[1]) + c];
             square += d * d;
         }
         length += std::sqrt(square);
@@ -36,15 +38,17 @@ double FindFrequency(Far::TopologyLevel const& level, std::span<double const> po
 }
 
 /// One octave at the limit points of a level's vertices.
-std::vector<double> MakeOctave(std::span<double const> limitPoints, int octave, double frequency, double amplitude,
-                               uint64_t seed) {
+std::vector<double> MakeOctave(std::span<double const> limitPoints, int octave, double frequency,
+                               double amplitude, uint64_t seed) {
     std::vector<double> values(limitPoints.size() / 3);
     tbb::parallel_for(tbb::blocked_range<size_t>(0, values.size(), 4096), [&](auto const& range) {
         CheckInterrupted();
         for (size_t i = range.begin(); i != range.end(); ++i) {
             double const* const x = &limitPoints[3 * i];
-            uint64_t const own = seed + static_cast<uint64_t>(octave) * 0x9e3779b97f4a7c15ull;  // octaves differ
-            values[i] = amplitude * GradientNoise(own, frequency * x[0], frequency * x[1], frequency * x[2]);
+            uint64_t const own =
+                seed + static_cast<uint64_t>(octave) * 0x9e3779b97f4a7c15ull;  // octaves differ
+            values[i] = amplitude *
+                        GradientNoise(own, frequency * x[0], frequency * x[1], frequency * x[2]);
         }
     });
     return values;
@@ -54,11 +58,14 @@ std::vector<double> MakeOctave(std::span<double const> limitPoints, int octave, 
 
 SurfaceNoise::SurfaceNoise(Scene const& scene, NoiseOptions const& options) {
     int const levels = options.octaves - 1;
-    double const corners = static_cast<double>(scene.cage.faceVertices.size()) * std::pow(4.0, levels);
+    double const corners =
+        static_cast<double>(scene.cage.faceVertices.size()) * std::pow(4.0, levels);
     if (corners > 2e9) {
-        throw Error(ErrorCode::TooLarge, fmt::format("{}: {} octaves of noise would make {:.1e} face corners on the finest "
-                                                     "level; at most 2e9 can be indexed, take fewer octaves",
-                                                     scene.path, options.octaves, corners));
+        throw Error(
+            ErrorCode::TooLarge,
+            fmt::format("{}: {} octaves of noise would make {:.1e} face corners on the finest "
+                        "level; at most 2e9 can be indexed, take fewer octaves",
+                        scene.path, options.octaves, corners));
     }
     auto const refiner = far_ext::CreateRefiner(scene.cage);
     if (levels > 0) {
@@ -67,7 +74,8 @@ SurfaceNoise::SurfaceNoise(Scene const& scene, NoiseOptions const& options) {
         refiner->RefineUniform(uniform);
     }
     std::vector<double> positions = scene.positions;
-    double frequency = options.frequency > 0.0 ? options.frequency : FindFrequency(refiner->GetLevel(0), positions);
+    double frequency = options.frequency > 0.0 ? options.frequency
+                                               : FindFrequency(refiner->GetLevel(0), positions);
     double amplitude = 1.0;
     for (int level = 0; level <= levels; ++level, frequency *= 2.0, amplitude *= options.gain) {
         CheckInterrupted();
@@ -76,10 +84,12 @@ SurfaceNoise::SurfaceNoise(Scene const& scene, NoiseOptions const& options) {
             _values = eval::RefineValues<1>(*refiner, level, _values);
         }
         eval::Interpolator const interpolator(*refiner, level);
-        std::vector<double> const octave =
-            MakeOctave(interpolator.FindLimits(positions, 3), level, frequency, amplitude, options.seed);
+        std::vector<double> const octave = MakeOctave(interpolator.FindLimits(positions, 3), level,
+                                                      frequency, amplitude, options.seed);
         std::vector<double> control(octave.size());
-        interpolator.Solve(octave, 1, control, {.tolerance = 1e-9, .onIteration = [](int, double) { CheckInterrupted(); }});
+        interpolator.Solve(octave, 1, control, {.tolerance = 1e-9, .onIteration = [](int, double) {
+                                                    CheckInterrupted();
+                                                }});
         _values.resize(control.size(), 0.0);
         for (size_t i = 0; i < control.size(); ++i) _values[i] += control[i];
         if (level < levels) continue;
@@ -96,16 +106,18 @@ SurfaceNoise::SurfaceNoise(Scene const& scene, NoiseOptions const& options) {
     _surface = std::make_unique<eval::LimitSurface>(*_refiner);
 }
 
-SurfaceNoise::Sampler::Sampler(SurfaceNoise const& noise) : _noise(noise), _tree(*noise._surface, noise._values, 1) {}
+SurfaceNoise::Sampler::Sampler(SurfaceNoise const& noise)
+    : _noise(noise), _tree(*noise._surface, noise._values, 1) {}
 
-void SurfaceNoise::Sampler::Evaluate(Index face, int domain, std::span<double const> s, std::span<double const> t,
-                                     std::span<double> values) {
+void SurfaceNoise::Sampler::Evaluate(Index face, int domain, std::span<double const> s,
+                                     std::span<double const> t, std::span<double> values) {
     _noise._faces->FindSorted(face, domain, s, t, _places);
     Index bound = -1;
     for (auto const& place : _places) {
         if (place.at.face != bound) _tree.Bind(place.at.face);
         bound = place.at.face;
-        values[place.index] = eval::EvaluateChannel(_tree, place.at.domain, place.at.s, place.at.t, 0);
+        values[place.index] =
+            eval::EvaluateChannel(_tree, place.at.domain, place.at.s, place.at.t, 0);
     }
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -11,18 +12,20 @@
 namespace limn::engine {
 
 struct NoiseOptions {
-    int octaves = 4;         ///< 1 to 10: one refinement level each
-    double frequency = 0.0;  ///< of the first octave, cells per unit length; 0: half a cell per mean edge
-    double gain = 0.5;       ///< amplitude from octave to octave
+    int octaves = 4;  ///< 1 to 10: one refinement level each
+    double frequency =
+        0.0;  ///< of the first octave, cells per unit length; 0: half a cell per mean edge
+    double gain = 0.5;  ///< amplitude from octave to octave
     uint64_t seed = 0;
 };
 
-/// Noise on a limit surface, without texture coordinates: for each level i of refinement, noise of frequency
-/// 2^i and amplitude gain^i at its vertices, interpolated by a fitted scalar subdivision surface; the sum of
-/// all of them, at any place of the surface.
+/// Noise on a limit surface, without texture coordinates: for each level i of refinement, noise of
+/// frequency 2^i and amplitude gain^i at its vertices, interpolated by a fitted scalar subdivision
+/// surface; the sum of all of them, at any place of the surface.
 ///
-/// Each octave's control values P solve A P = N on their level, so that the limit passes through the noise N
-/// at the limit of every vertex; refined by the surface's own rules they add up on the finest level.
+/// Each octave's control values P solve A P = N on their level, so that the limit passes through
+/// the noise N at the limit of every vertex; refined by the surface's own rules they add up on the
+/// finest level.
 ///
 /// Source   [LaiCheng11] Sec. 5; surface.md 1.4
 class SurfaceNoise {
@@ -51,8 +54,8 @@ public:
     };
 
 private:
-    far_ext::ControlMesh _cage;  // the finest level
-    std::vector<double> _values; // of its vertices
+    far_ext::ControlMesh _cage;   // the finest level
+    std::vector<double> _values;  // of its vertices
     std::unique_ptr<Far::TopologyRefiner> _refiner;
     std::unique_ptr<eval::LimitSurface> _surface;
     std::unique_ptr<eval::RefinedFaces> _faces;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/scene/job.h"
 
 #include <algorithm>
@@ -57,11 +58,13 @@ void Job::Finish() {
 }
 
 void Job::Show(size_t done, bool isLast) {
-    double const share = _total ? std::min(1.0, static_cast<double>(done) / static_cast<double>(_total)) : 1.0;
+    double const share =
+        _total ? std::min(1.0, static_cast<double>(done) / static_cast<double>(_total)) : 1.0;
     std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - _start;
-    std::string const time = isLast       ? fmt::format("{:.1f} s", elapsed.count())
-                             : share > 0.0 ? fmt::format("{:.0f} s left", elapsed.count() * (1 - share) / share)
-                                           : std::string("starting");
+    std::string const time =
+        isLast        ? fmt::format("{:.1f} s", elapsed.count())
+        : share > 0.0 ? fmt::format("{:.0f} s left", elapsed.count() * (1 - share) / share)
+                      : std::string("starting");
     if (_progress == Progress::Lines) {
         fmt::print(stderr, "limn: {}: {:.0f} %, {}\n", _what, 100 * share, time);
         return;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/scene/mesh_info.h"
 
 #include <algorithm>
@@ -17,7 +18,8 @@ using Level = Far::TopologyLevel;
 /// Sets that grow together, each member with its parity (0 or 1) to its root.
 class ParitySets {
 public:
-    explicit ParitySets(Index count) : _parent(static_cast<size_t>(count)), _parity(_parent.size(), 0) {
+    explicit ParitySets(Index count)
+        : _parent(static_cast<size_t>(count)), _parity(_parent.size(), 0) {
         std::iota(_parent.begin(), _parent.end(), 0);
     }
 
@@ -105,19 +107,23 @@ private:
             auto const faces = _level.GetEdgeFaces(crowded.element);
             crowded.line = LineOf(faces[0]);
             crowded.message = fmt::format(
-                "{} with more than 2 faces, first {} with {} ({} among them); OpenSubdiv makes them sharp",
-                Count(crowded.count, "edge", "edges"), NameEdge(crowded.element), faces.size(), _scene.NameFace(faces[0]));
+                "{} with more than 2 faces, first {} with {} ({} among them); OpenSubdiv makes "
+                "them sharp",
+                Count(crowded.count, "edge", "edges"), NameEdge(crowded.element), faces.size(),
+                _scene.NameFace(faces[0]));
             _defects.push_back(crowded);
         }
         if (wound.count) {
             auto const faces = _level.GetEdgeFaces(wound.element);
             wound.line = LineOf(faces[1]);
-            wound.message = fmt::format("{} join faces wound in opposite directions, first {} between {} and {}; OpenSubdiv "
-                                        "makes them sharp{}",
-                                        Count(wound.count, "edge", "edges"), NameEdge(wound.element),
-                                        _scene.NameFace(faces[0]), _scene.NameFace(faces[1]),
-                                        isOrientable ? "; turn the faces of one side round"
-                                                     : "; no turning helps, the surface cannot be oriented");
+            wound.message = fmt::format(
+                "{} join faces wound in opposite directions, first {} between {} and {}; "
+                "OpenSubdiv "
+                "makes them sharp{}",
+                Count(wound.count, "edge", "edges"), NameEdge(wound.element),
+                _scene.NameFace(faces[0]), _scene.NameFace(faces[1]),
+                isOrientable ? "; turn the faces of one side round"
+                             : "; no turning helps, the surface cannot be oriented");
             if (!isOrientable) wound.kind = "not_orientable";
             _defects.push_back(wound);
         }
@@ -130,18 +136,21 @@ private:
             auto const vertices = _level.GetFaceVertices(face);
             sorted.assign(vertices.begin(), vertices.end());
             std::sort(sorted.begin(), sorted.end());
-            bool const isRepeated = std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+            bool const isRepeated =
+                std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
             if (isRepeated && repeated.count++ == 0) repeated.element = face;
         }
         if (repeated.count == 0) return;
         repeated.line = LineOf(repeated.element);
         repeated.message = fmt::format("{} the same vertex more than once, first {}",
-                                       Count(repeated.count, "face uses", "faces use"), _scene.NameFace(repeated.element));
+                                       Count(repeated.count, "face uses", "faces use"),
+                                       _scene.NameFace(repeated.element));
         _defects.push_back(repeated);
     }
 
     void FindVertexDefects() {
-        Defect unused{"unreferenced_vertex", -1, 0, 0, {}}, fans{"non_manifold_vertex", -1, 0, 0, {}};
+        Defect unused{"unreferenced_vertex", -1, 0, 0, {}},
+            fans{"non_manifold_vertex", -1, 0, 0, {}};
         for (Index vertex = 0; vertex < _level.GetNumVertices(); ++vertex) {
             if (_level.GetVertexFaces(vertex).size() == 0) {
                 if (unused.count++ == 0) unused.element = vertex;
@@ -149,17 +158,20 @@ private:
             }
             if (!_level.IsVertexNonManifold(vertex)) continue;
             auto const edges = _level.GetVertexEdges(vertex);
-            bool const byEdge = std::any_of(edges.begin(), edges.end(), [&](Index e) { return _level.IsEdgeNonManifold(e); });
+            bool const byEdge = std::any_of(edges.begin(), edges.end(),
+                                            [&](Index e) { return _level.IsEdgeNonManifold(e); });
             if (!byEdge && fans.count++ == 0) fans.element = vertex;
         }
         if (fans.count) {
-            fans.message = fmt::format("{} where surfaces touch in a point, first vertex {}; OpenSubdiv makes them sharp",
-                                       Count(fans.count, "vertex", "vertices"), fans.element);
+            fans.message = fmt::format(
+                "{} where surfaces touch in a point, first vertex {}; OpenSubdiv makes them sharp",
+                Count(fans.count, "vertex", "vertices"), fans.element);
             _defects.push_back(fans);
         }
         if (unused.count) {
-            unused.message = fmt::format("{} no face, first vertex {}", Count(unused.count, "vertex is used by", "vertices are used by"),
-                                         unused.element);
+            unused.message = fmt::format(
+                "{} no face, first vertex {}",
+                Count(unused.count, "vertex is used by", "vertices are used by"), unused.element);
             _defects.push_back(unused);
         }
     }
@@ -178,8 +190,10 @@ private:
         }
         if (loose.count == 0) return;
         loose.message = fmt::format("{} vertices that no edge joins and {} no effect, first {} {}",
-                                    Count(loose.count, "crease names", "creases name"), loose.count == 1 ? "has" : "have",
-                                    cage.creaseVertexPairs[2 * loose.element], cage.creaseVertexPairs[2 * loose.element + 1]);
+                                    Count(loose.count, "crease names", "creases name"),
+                                    loose.count == 1 ? "has" : "have",
+                                    cage.creaseVertexPairs[2 * loose.element],
+                                    cage.creaseVertexPairs[2 * loose.element + 1]);
         _defects.push_back(loose);
     }
 
@@ -188,8 +202,8 @@ private:
     std::vector<Defect> _defects;
 };
 
-/// Marks faces whose texture polygons share samples of a 512 x 512 grid per tile. Tiles are looked at one
-/// after another, so that memory holds one.
+/// Marks faces whose texture polygons share samples of a 512 x 512 grid per tile. Tiles are looked
+/// at one after another, so that memory holds one.
 class OverlapFinder {
 public:
     using Polygon = std::vector<std::array<double, 2>>;
@@ -209,7 +223,8 @@ public:
             minV = std::min(minV, p[1]);
             maxV = std::max(maxV, p[1]);
         }
-        int const first = ToSample(minV - _tileV, kOffsetV), last = ToSample(maxV - _tileV, kOffsetV) - 1;
+        int const first = ToSample(minV - _tileV, kOffsetV),
+                  last = ToSample(maxV - _tileV, kOffsetV) - 1;
         for (int row = first; row <= last; ++row) {
             double const v = _tileV + (row + kOffsetV) / kSize;
             _crossings.clear();
@@ -222,29 +237,36 @@ public:
             }
             std::sort(_crossings.begin(), _crossings.end());
             for (size_t i = 0; i + 1 < _crossings.size(); i += 2) {
-                int const from = ToSample(_crossings[i] - _tileU, kOffsetU), to = ToSample(_crossings[i + 1] - _tileU, kOffsetU);
+                int const from = ToSample(_crossings[i] - _tileU, kOffsetU),
+                          to = ToSample(_crossings[i + 1] - _tileU, kOffsetU);
                 for (int column = from; column < to; ++column) Claim(face, row, column);
             }
         }
     }
 
-    size_t GetCount() const { return static_cast<size_t>(std::count(_overlaps.begin(), _overlaps.end(), 1)); }
+    size_t GetCount() const {
+        return static_cast<size_t>(std::count(_overlaps.begin(), _overlaps.end(), 1));
+    }
 
 private:
     static constexpr int kSize = 512;
-    // Samples lie on no simple fraction and on no diagonal of the texel grid, where layouts have their edges.
+    // Samples lie on no simple fraction and on no diagonal of the texel grid, where layouts have
+    // their edges.
     static constexpr double kOffsetU = 0.41421356, kOffsetV = 0.73205081;
 
-    /// The first sample at or after a coordinate of the tile, within 0 .. kSize. Spans end before theirs, so
-    /// that a sample on a shared edge belongs to one side.
+    /// The first sample at or after a coordinate of the tile, within 0 .. kSize. Spans end before
+    /// theirs, so that a sample on a shared edge belongs to one side.
     static int ToSample(double x, double offset) {
-        return static_cast<int>(std::ceil(std::clamp(x * kSize - offset, 0.0, static_cast<double>(kSize))));
+        return static_cast<int>(
+            std::ceil(std::clamp(x * kSize - offset, 0.0, static_cast<double>(kSize))));
     }
 
     void Claim(Index face, int row, int column) {
         Index& owner = _owners[static_cast<size_t>(row * kSize + column)];
-        if (owner >= 0 && owner != face) _overlaps[owner] = _overlaps[face] = 1;
-        else owner = face;
+        if (owner >= 0 && owner != face)
+            _overlaps[owner] = _overlaps[face] = 1;
+        else
+            owner = face;
     }
 
     int _tileU = 0, _tileV = 0;
@@ -255,7 +277,8 @@ private:
 
 OverlapFinder::Polygon GetTexturePolygon(Scene const& scene, Index const* values, int size) {
     OverlapFinder::Polygon polygon;
-    for (int i = 0; i < size; ++i) polygon.push_back({scene.uvs[2 * values[i]], scene.uvs[2 * values[i] + 1]});
+    for (int i = 0; i < size; ++i)
+        polygon.push_back({scene.uvs[2 * values[i]], scene.uvs[2 * values[i] + 1]});
     return polygon;
 }
 
@@ -298,8 +321,10 @@ UVInfo DescribeUVs(Scene const& scene) {
             int const u = std::min(9, static_cast<int>(0.5 * (minU + maxU)));
             int const v = std::min(899, static_cast<int>(0.5 * (minV + maxV)));
             tiles.insert(1001 + u + 10 * v);
-            for (int row = static_cast<int>(minV); !isFlat && row <= std::min(899, static_cast<int>(maxV)); ++row) {
-                for (int column = static_cast<int>(minU); column <= std::min(9, static_cast<int>(maxU)); ++column) {
+            for (int row = static_cast<int>(minV);
+                 !isFlat && row <= std::min(899, static_cast<int>(maxV)); ++row) {
+                for (int column = static_cast<int>(minU);
+                     column <= std::min(9, static_cast<int>(maxU)); ++column) {
                     facesOfTile[1001 + column + 10 * row].emplace_back(face, corner);
                 }
             }
@@ -311,7 +336,8 @@ UVInfo DescribeUVs(Scene const& scene) {
     for (auto const& [tile, faces] : facesOfTile) {
         overlaps.StartTile((tile - 1001) % 10, (tile - 1001) / 10);
         for (auto const& [face, first] : faces) {
-            overlaps.Add(face, GetTexturePolygon(scene, values + first, scene.cage.faceSizes[face]));
+            overlaps.Add(face,
+                         GetTexturePolygon(scene, values + first, scene.cage.faceSizes[face]));
         }
     }
     info.overlapFaces = overlaps.GetCount();
@@ -320,7 +346,9 @@ UVInfo DescribeUVs(Scene const& scene) {
 
 }  // namespace
 
-std::vector<Defect> FindDefects(Scene const& scene, Level const& level) { return DefectFinder(scene, level).Find(); }
+std::vector<Defect> FindDefects(Scene const& scene, Level const& level) {
+    return DefectFinder(scene, level).Find();
+}
 
 MeshInfo DescribeMesh(Scene const& scene, Level const& level) {
     MeshInfo info;
@@ -346,7 +374,8 @@ MeshInfo DescribeMesh(Scene const& scene, Level const& level) {
         ++numUsed;
         info.components += components.Find(vertex).first == vertex;
         auto const edges = level.GetVertexEdges(vertex);
-        info.minValence = info.maxValence == 0 ? edges.size() : std::min(info.minValence, edges.size());
+        info.minValence =
+            info.maxValence == 0 ? edges.size() : std::min(info.minValence, edges.size());
         info.maxValence = std::max(info.maxValence, edges.size());
         Index previous = -1;
         for (Index edge : edges) {
@@ -364,7 +393,8 @@ MeshInfo DescribeMesh(Scene const& scene, Level const& level) {
             return defect.kind.starts_with("non_manifold") || defect.kind == "not_orientable" ||
                    defect.kind == "repeated_corner";
         });
-    if (isOrientedManifold) info.genus = (2 * info.components - info.eulerCharacteristic - info.boundaryLoops) / 2;
+    if (isOrientedManifold)
+        info.genus = (2 * info.components - info.eulerCharacteristic - info.boundaryLoops) / 2;
     info.uv = DescribeUVs(scene);
     return info;
 }

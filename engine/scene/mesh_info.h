@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <map>
@@ -12,8 +13,8 @@ namespace limn::engine {
 
 /// Something about a mesh that its maker should know.
 struct Defect {
-    std::string kind;  ///< non_manifold_edge, non_manifold_vertex, winding, not_orientable, repeated_corner,
-                       ///< unreferenced_vertex, crease_without_edge
+    std::string kind;    ///< non_manifold_edge, non_manifold_vertex, winding, not_orientable,
+                         ///< repeated_corner, unreferenced_vertex, crease_without_edge
     Index element = -1;  ///< the first edge, vertex or face concerned
     uint32_t line = 0;   ///< in the file, where known
     size_t count = 1;    ///< how many elements have it
@@ -35,7 +36,8 @@ struct MeshInfo {
     Index vertices = 0, edges = 0, faces = 0;
     std::map<int, Index> facesBySize;
     int components = 0, boundaryLoops = 0, eulerCharacteristic = 0;
-    int genus = -1;  ///< summed over components, holes filled; -1 where not manifold or not orientable
+    int genus =
+        -1;  ///< summed over components, holes filled; -1 where not manifold or not orientable
     int minValence = 0, maxValence = 0;
     size_t creases = 0, corners = 0, holes = 0;
     std::vector<std::string> groups;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/scene/refine.h"
 
 #include <algorithm>
@@ -21,7 +22,8 @@ using Level = Far::TopologyLevel;
 
 /// Refines values of length N through all levels: of vertices, or of a face-varying channel.
 template <size_t N>
-std::vector<double> RefineToLast(Far::TopologyRefiner const& refiner, std::span<double const> base, int fvarChannel = -1) {
+std::vector<double> RefineToLast(Far::TopologyRefiner const& refiner, std::span<double const> base,
+                                 int fvarChannel = -1) {
     std::vector<double> values(base.begin(), base.end());
     for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
         CheckInterrupted();
@@ -35,10 +37,12 @@ Primvar RefinePrimvar(Far::TopologyRefiner const& refiner, Primvar const& primva
     size_t const n = static_cast<size_t>(primvar.numChannels);
     for (size_t c = 0; c < n; ++c) {
         std::vector<double> channel;
-        for (size_t i = c; i < primvar.values.size(); i += n) channel.push_back(static_cast<double>(primvar.values[i]));
+        for (size_t i = c; i < primvar.values.size(); i += n)
+            channel.push_back(static_cast<double>(primvar.values[i]));
         auto const refined = RefineToLast<1>(refiner, channel);
         fine.values.resize(refined.size() * n);
-        for (size_t i = 0; i < refined.size(); ++i) fine.values[i * n + c] = static_cast<float>(refined[i]);
+        for (size_t i = 0; i < refined.size(); ++i)
+            fine.values[i * n + c] = static_cast<float>(refined[i]);
     }
     return fine;
 }
@@ -47,7 +51,9 @@ Primvar RefinePrimvar(Far::TopologyRefiner const& refiner, Primvar const& primva
 void MoveToLimit(Scene& fine) {
     auto const refiner = far_ext::CreateRefiner(fine.cage);
     eval::LimitSurface const surface(*refiner);
-    fine.positions = eval::EvaluateVertexLimits(surface, fine.positions, 3, eval::FaceTree::kLimitDepth, CheckInterrupted).values;
+    fine.positions = eval::EvaluateVertexLimits(surface, fine.positions, 3,
+                                                eval::FaceTree::kLimitDepth, CheckInterrupted)
+                         .values;
 }
 
 }  // namespace
@@ -56,11 +62,13 @@ std::unique_ptr<Far::TopologyRefiner> MakeUniformRefiner(Scene const& scene, int
     if (levels < 0 || levels > 10) {
         throw Error(ErrorCode::BadOption, fmt::format("--levels: {} is not from 0 to 10", levels));
     }
-    double const corners = static_cast<double>(scene.cage.faceVertices.size()) * std::pow(4.0, levels);
+    double const corners =
+        static_cast<double>(scene.cage.faceVertices.size()) * std::pow(4.0, levels);
     if (corners > 2e9) {
-        throw Error(ErrorCode::TooLarge, fmt::format("{}: {} levels would make {:.1e} face corners; at most 2e9 can be "
-                                                     "indexed",
-                                                     scene.path, levels, corners));
+        throw Error(ErrorCode::TooLarge,
+                    fmt::format("{}: {} levels would make {:.1e} face corners; at most 2e9 can be "
+                                "indexed",
+                                scene.path, levels, corners));
     }
     auto refiner = far_ext::CreateRefiner(scene.cage);
     Far::TopologyRefiner::UniformOptions uniform(levels);
@@ -73,7 +81,8 @@ void InheritGroups(Scene const& scene, std::vector<Index> const& baseFaces, Scen
     for (size_t kind = 0; kind < 3; ++kind) {
         fine.groups[kind].names = scene.groups[kind].names;
         if (scene.groups[kind].faceGroup.empty()) continue;
-        for (Index face : baseFaces) fine.groups[kind].faceGroup.push_back(scene.groups[kind].faceGroup[face]);
+        for (Index face : baseFaces)
+            fine.groups[kind].faceGroup.push_back(scene.groups[kind].faceGroup[face]);
     }
 }
 
@@ -83,7 +92,8 @@ Scene RefineAllButPositions(Scene const& scene, Far::TopologyRefiner const& refi
     fine.name = scene.name;
     fine.cage = far_ext::MakeRefinedCage(refiner, scene.cage);
     if (scene.HasUVs()) fine.uvs = RefineToLast<2>(refiner, scene.uvs, 0);
-    for (Primvar const& primvar : scene.primvars) fine.primvars.push_back(RefinePrimvar(refiner, primvar));
+    for (Primvar const& primvar : scene.primvars)
+        fine.primvars.push_back(RefinePrimvar(refiner, primvar));
     InheritGroups(scene, far_ext::FindBaseFaces(refiner, refiner.GetMaxLevel()), fine);
     return fine;
 }

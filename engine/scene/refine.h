@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -16,7 +17,8 @@ namespace limn::engine {
 ///
 /// \param levels  0 to 10
 /// \param toLimit also moves the vertices (not the UVs) to their limit
-/// \param rule    of the positions; Butterfly needs the Loop scheme, and its vertices are in the limit already
+/// \param rule    of the positions; Butterfly needs the Loop scheme, and its vertices are in the
+///                limit already
 /// \throws Error  BadOption; TooLarge where the refined mesh would pass 2^31 indices
 Scene RefineUniformly(Scene const& scene, int levels, bool toLimit,
                       far_ext::SubdivisionRule rule = far_ext::SubdivisionRule::Scheme);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -21,7 +22,8 @@ enum class GroupKind { Material, Group, Object };  // usemtl, g, o
 
 /// One kind of face group; `faceGroup` is empty where the file has none of that kind.
 struct FaceGroups {
-    /// As they stand in the file. What follows a `g` may be several names: such a face is in each of these groups.
+    /// As they stand in the file. What follows a `g` may be several names: such a face is in each
+    /// of these groups.
     std::vector<std::string> names;
     std::vector<Index> faceGroup;  ///< per face: index into names, or -1
 };
@@ -34,7 +36,8 @@ struct Scene {
 
     far_ext::ControlMesh cage;      ///< fvar channel 0 holds the UVs where there are any
     std::vector<double> positions;  ///< 3 per vertex
-    std::vector<double> normals;    ///< 3 per vertex, written to OBJ; empty without. Readers leave them out: limits have their own
+    std::vector<double> normals;    ///< 3 per vertex, written to OBJ; empty without. Readers leave
+                                    ///< them out: limits have their own
     std::vector<double> uvs;        ///< 2 per value of fvar channel 0; empty without UVs
     std::array<FaceGroups, 3> groups;  ///< by GroupKind
     std::vector<Primvar> primvars;

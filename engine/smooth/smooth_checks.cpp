@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/smooth/smooth_checks.h"
 
 #include <cmath>
@@ -17,7 +18,9 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-Vector At(Scene const& scene, Index vertex) { return Vector(&scene.positions[3 * static_cast<size_t>(vertex)]); }
+Vector At(Scene const& scene, Index vertex) {
+    return Vector(&scene.positions[3 * static_cast<size_t>(vertex)]);
+}
 
 }  // namespace
 
@@ -41,8 +44,13 @@ SmoothComponents::SmoothComponents(Far::TopologyLevel const& level) {
 
 void RefuseDefects(Scene const& scene, Far::TopologyLevel const& level, Job& job) {
     for (Defect const& defect : FindDefects(scene, level)) {
-        for (char const* kind : {"non_manifold_edge", "non_manifold_vertex", "winding", "not_orientable", "repeated_corner"}) {
-            if (defect.kind == kind) throw Error(ErrorCode::BadMesh, fmt::format("{}: {}; a geometric filter needs a manifold, oriented one way", scene.path, defect.message));
+        for (char const* kind : {"non_manifold_edge", "non_manifold_vertex", "winding",
+                                 "not_orientable", "repeated_corner"}) {
+            if (defect.kind == kind)
+                throw Error(
+                    ErrorCode::BadMesh,
+                    fmt::format("{}: {}; a geometric filter needs a manifold, oriented one way",
+                                scene.path, defect.message));
         }
         job.Warn(fmt::format("{}: {}", scene.path, defect.message));
     }
@@ -54,24 +62,30 @@ void RequireGraph(Scene const& scene, Far::TopologyLevel const& level) {
         auto const vertices = level.GetFaceVertices(face);
         int const n = vertices.size();
         for (int k = 0; k < n; ++k) {
-            Vector const a = At(scene, vertices[k]), b = At(scene, vertices[(k + 1) % n]), c = At(scene, vertices[(k + 2) % n]);
+            Vector const a = At(scene, vertices[k]), b = At(scene, vertices[(k + 1) % n]),
+                         c = At(scene, vertices[(k + 2) % n]);
             double const turn = (b - a).x() * (c - b).y() - (b - a).y() * (c - b).x();
             if (direction == 0.0) direction = turn;
             if (turn != 0.0 && (turn > 0.0) == (direction > 0.0)) continue;
-            throw Error(ErrorCode::BadMesh, fmt::format("{}: {} is folded, hollow or without area in the plane of x and y; --graph needs heights z over a "
-                                                        "plane of convex faces",
-                                                        scene.path, scene.NameFace(face)));
+            throw Error(ErrorCode::BadMesh,
+                        fmt::format("{}: {} is folded, hollow or without area in the plane of x "
+                                    "and y; --graph needs heights z over a "
+                                    "plane of convex faces",
+                                    scene.path, scene.NameFace(face)));
         }
     }
 }
 
-void WarnOfSharpCorners(Scene const& scene, Far::TopologyLevel const& level, far_ext::CascadeLevel const& first, std::vector<double> const& widths, Job& job) {
+void WarnOfSharpCorners(Scene const& scene, Far::TopologyLevel const& level,
+                        far_ext::CascadeLevel const& first, std::vector<double> const& widths,
+                        Job& job) {
     std::vector<double> angles(static_cast<size_t>(level.GetNumVertices()), 0.0);
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         auto const vertices = level.GetFaceVertices(face);
         int const n = vertices.size();
         for (int k = 0; k < n; ++k) {
-            Vector const a = At(scene, vertices[(k + n - 1) % n]) - At(scene, vertices[k]), b = At(scene, vertices[(k + 1) % n]) - At(scene, vertices[k]);
+            Vector const a = At(scene, vertices[(k + n - 1) % n]) - At(scene, vertices[k]),
+                         b = At(scene, vertices[(k + 1) % n]) - At(scene, vertices[k]);
             angles[vertices[k]] += std::atan2(a.cross(b).norm(), a.dot(b));
         }
     }
@@ -80,13 +94,18 @@ void WarnOfSharpCorners(Scene const& scene, Far::TopologyLevel const& level, far
     Index sharpest = -1;
     for (Index row = 0; row < first.numClosed; ++row) {
         Index const vertex = first.vertices[row];
-        if (vertex >= level.GetNumVertices() || angles[vertex] >= kHalfTurn || (!widths.empty() && widths[vertex] == 0.0)) continue;
+        if (vertex >= level.GetNumVertices() || angles[vertex] >= kHalfTurn ||
+            (!widths.empty() && widths[vertex] == 0.0))
+            continue;
         ++count;
         if (sharpest < 0 || angles[vertex] < angles[sharpest]) sharpest = vertex;
     }
     if (count == 0) return;
-    job.Warn(fmt::format("{}: at vertex {}{} the faces' angles add up to {:.1f} degrees; below 180 the filter's triangles degenerate with the levels", scene.path,
-                         sharpest, count > 1 ? fmt::format(" and {} more", count - 1) : "", angles[sharpest] * 180.0 / std::numbers::pi));
+    job.Warn(
+        fmt::format("{}: at vertex {}{} the faces' angles add up to {:.1f} degrees; below 180 the "
+                    "filter's triangles degenerate with the levels",
+                    scene.path, sharpest, count > 1 ? fmt::format(" and {} more", count - 1) : "",
+                    angles[sharpest] * 180.0 / std::numbers::pi));
 }
 
 }  // namespace limn::engine

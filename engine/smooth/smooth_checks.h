@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <vector>
@@ -35,8 +36,11 @@ void RequireGraph(Scene const& scene, Far::TopologyLevel const& level);
 /// Warns of corners so sharp that triangles degenerate there with the levels.
 ///
 /// \param first   the first level's rows
-/// \param widths  per vertex of the first level or of the scene, whose vertices are the first ones there; empty: everywhere some
+/// \param widths  per vertex of the first level or of the scene, whose vertices are the first ones
+///                there; empty: everywhere some
 /// Source  [Diewald02] Fig. 9; surface.md 3.3
-void WarnOfSharpCorners(Scene const& scene, Far::TopologyLevel const& level, far_ext::CascadeLevel const& first, std::vector<double> const& widths, Job& job);
+void WarnOfSharpCorners(Scene const& scene, Far::TopologyLevel const& level,
+                        far_ext::CascadeLevel const& first, std::vector<double> const& widths,
+                        Job& job);
 
 }  // namespace limn::engine

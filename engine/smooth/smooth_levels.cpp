@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/smooth/smooth_levels.h"
 
 #include <algorithm>
@@ -17,10 +18,13 @@ namespace {
 
 /// Appends the means of pairs of values.
 template <class Value>
-void AppendMeans(std::vector<Value>& values, size_t numChannels, std::span<std::array<Index, 2> const> parents) {
+void AppendMeans(std::vector<Value>& values, size_t numChannels,
+                 std::span<std::array<Index, 2> const> parents) {
     for (auto const& [a, b] : parents) {
         for (size_t c = 0; c < numChannels; ++c) {
-            values.push_back((values[static_cast<size_t>(a) * numChannels + c] + values[static_cast<size_t>(b) * numChannels + c]) / 2);
+            values.push_back((values[static_cast<size_t>(a) * numChannels + c] +
+                              values[static_cast<size_t>(b) * numChannels + c]) /
+                             2);
         }
     }
 }
@@ -28,29 +32,46 @@ void AppendMeans(std::vector<Value>& values, size_t numChannels, std::span<std::
 far_ext::Bisection StartBisection(Scene const& scene, bool keepsCreases) {
     for (Index face = 0; face < scene.cage.GetNumFaces(); ++face) {
         if (scene.cage.faceSizes[face] == 3) continue;
-        throw Error(ErrorCode::BadMesh, fmt::format("{}: {} has {} corners; --refinement bisect needs triangles, quadrisect takes all polygons",
-                                                    scene.path, scene.NameFace(face), scene.cage.faceSizes[face]));
+        throw Error(ErrorCode::BadMesh,
+                    fmt::format("{}: {} has {} corners; --refinement bisect needs triangles, "
+                                "quadrisect takes all polygons",
+                                scene.path, scene.NameFace(face), scene.cage.faceSizes[face]));
     }
-    auto const isInfinite = [](float sharpness) { return sharpness >= far_ext::kInfiniteSharpness; };
+    auto const isInfinite = [](float sharpness) {
+        return sharpness >= far_ext::kInfiniteSharpness;
+    };
     std::vector<std::array<Index, 2>> creases;
     std::vector<Index> corners;
     for (size_t i = 0; keepsCreases && i < scene.cage.creaseSharpness.size(); ++i) {
-        if (isInfinite(scene.cage.creaseSharpness[i])) creases.push_back({scene.cage.creaseVertexPairs[2 * i], scene.cage.creaseVertexPairs[2 * i + 1]});
+        if (isInfinite(scene.cage.creaseSharpness[i]))
+            creases.push_back(
+                {scene.cage.creaseVertexPairs[2 * i], scene.cage.creaseVertexPairs[2 * i + 1]});
     }
     for (size_t i = 0; keepsCreases && i < scene.cage.cornerSharpness.size(); ++i) {
-        if (isInfinite(scene.cage.cornerSharpness[i])) corners.push_back(scene.cage.cornerVertices[i]);
+        if (isInfinite(scene.cage.cornerSharpness[i]))
+            corners.push_back(scene.cage.cornerVertices[i]);
     }
-    far_ext::Bisection bisection(scene.cage.numVertices, scene.cage.faceVertices, scene.positions, std::move(creases), std::move(corners));
-    if (scene.HasUVs()) bisection.SetFVarChannel(scene.cage.fvarChannels[0].numValues, scene.cage.fvarChannels[0].valueIndices);
+    far_ext::Bisection bisection(scene.cage.numVertices, scene.cage.faceVertices, scene.positions,
+                                 std::move(creases), std::move(corners));
+    if (scene.HasUVs())
+        bisection.SetFVarChannel(scene.cage.fvarChannels[0].numValues,
+                                 scene.cage.fvarChannels[0].valueIndices);
     return bisection;
 }
 
 }  // namespace
 
-SmoothLevels::SmoothLevels(Scene const& scene, int numLevels, SmoothRefinement refinement, bool keepsCreases)
-    : _scene(scene), _refinement(refinement), _keepsCreases(keepsCreases), _uvs(scene.uvs), _primvars(scene.primvars) {
-    if (refinement == SmoothRefinement::Bisect) _bisection = StartBisection(scene, keepsCreases);
-    else _refiner = MakeUniformRefiner(scene, numLevels);
+SmoothLevels::SmoothLevels(Scene const& scene, int numLevels, SmoothRefinement refinement,
+                           bool keepsCreases)
+    : _scene(scene),
+      _refinement(refinement),
+      _keepsCreases(keepsCreases),
+      _uvs(scene.uvs),
+      _primvars(scene.primvars) {
+    if (refinement == SmoothRefinement::Bisect)
+        _bisection = StartBisection(scene, keepsCreases);
+    else
+        _refiner = MakeUniformRefiner(scene, numLevels);
 }
 
 far_ext::CascadeMesh const& SmoothLevels::MakeNext() {
@@ -70,7 +91,8 @@ far_ext::CascadeMesh const& SmoothLevels::MakeNext() {
         Index const* const own = &_mesh.parents[static_cast<size_t>(_mesh.parentOffsets[vertex])];
         parents.push_back({own[0], own[1]});
     }
-    for (Primvar& primvar : _primvars) AppendMeans(primvar.values, static_cast<size_t>(primvar.numChannels), parents);
+    for (Primvar& primvar : _primvars)
+        AppendMeans(primvar.values, static_cast<size_t>(primvar.numChannels), parents);
     AppendMeans(_uvs, 2, _bisection->GetFVarParents());
     return _mesh;
 }
@@ -83,7 +105,10 @@ std::vector<Index> SmoothLevels::FindBaseFaces() const {
 std::vector<double> SmoothLevels::FindCornerUVs() {
     std::vector<double> corners;
     corners.reserve(2 * _mesh.faces.size());
-    auto const add = [&](Index value) { corners.insert(corners.end(), {_uvs[2 * static_cast<size_t>(value)], _uvs[2 * static_cast<size_t>(value) + 1]}); };
+    auto const add = [&](Index value) {
+        corners.insert(corners.end(), {_uvs[2 * static_cast<size_t>(value)],
+                                       _uvs[2 * static_cast<size_t>(value) + 1]});
+    };
     if (_bisection) {
         std::for_each(_bisection->GetFVarValues().begin(), _bisection->GetFVarValues().end(), add);
         return corners;
@@ -118,14 +143,16 @@ Scene SmoothLevels::MakeBisectedScene() const {
     fine.cage.faceVertices = _mesh.faces;
     fine.cage.faceSizes.assign(static_cast<size_t>(_mesh.GetNumFaces()), 3);
     for (auto const& crease : _mesh.creases) {
-        fine.cage.creaseVertexPairs.insert(fine.cage.creaseVertexPairs.end(), crease.begin(), crease.end());
+        fine.cage.creaseVertexPairs.insert(fine.cage.creaseVertexPairs.end(), crease.begin(),
+                                           crease.end());
         fine.cage.creaseSharpness.push_back(far_ext::kInfiniteSharpness);
     }
     fine.cage.cornerVertices = _mesh.corners;
     fine.cage.cornerSharpness.assign(_mesh.corners.size(), far_ext::kInfiniteSharpness);
     if (_scene.HasUVs()) {
         fine.uvs = _uvs;
-        fine.cage.fvarChannels.push_back({static_cast<Index>(_uvs.size() / 2), _bisection->GetFVarValues()});
+        fine.cage.fvarChannels.push_back(
+            {static_cast<Index>(_uvs.size() / 2), _bisection->GetFVarValues()});
     }
     fine.primvars = _primvars;
     auto const& base = _bisection->GetBaseFaces();

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -19,9 +20,10 @@ enum class SmoothRefinement { Quadrisect, Bisect };
 class SmoothLevels {
 public:
     /// \param scene         kept by reference
-    /// \param keepsCreases  whether creases and corners split the filter, as long as their sharpness lasts; bisection keeps
-    ///                      infinitely sharp ones only
-    /// \throws Error        BadOption: bisection of faces that are no triangles.  As RefineUniformly
+    /// \param keepsCreases  whether creases and corners split the filter, as long as their
+    ///                      sharpness lasts; bisection keeps infinitely sharp ones only
+    /// \throws Error        BadOption: bisection of faces that are no triangles.  As
+    ///                      RefineUniformly
     SmoothLevels(Scene const& scene, int numLevels, SmoothRefinement refinement, bool keepsCreases);
 
     /// Makes the next level's mesh. \return it, until the next call
@@ -33,11 +35,12 @@ public:
     /// Per face of the mesh made last: the face of the scene it lies in.
     std::vector<Index> FindBaseFaces() const;
 
-    /// Texture coordinates of the mesh made last, 2 per corner of its faces. Needs a scene that has some.
+    /// Texture coordinates of the mesh made last, 2 per corner of its faces. Needs a scene that has
+    /// some.
     std::vector<double> FindCornerUVs();
 
-    /// The last level as a scene, all but positions: topology, texture coordinates, groups, primvars, holes; creases and
-    /// corners only where they were kept.
+    /// The last level as a scene, all but positions: topology, texture coordinates, groups,
+    /// primvars, holes; creases and corners only where they were kept.
     Scene MakeScene() const;
 
 private:
@@ -50,9 +53,9 @@ private:
     far_ext::CascadeMesh _mesh;
     std::unique_ptr<Far::TopologyRefiner> _refiner;  // of one of these
     std::optional<far_ext::Bisection> _bisection;
-    std::vector<double> _uvs;             // of the level's face-varying values
+    std::vector<double> _uvs;  // of the level's face-varying values
     int _uvLevel = 0;
-    std::vector<Primvar> _primvars;       // of a bisected level
+    std::vector<Primvar> _primvars;  // of a bisected level
 };
 
 }  // namespace limn::engine

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/cascade/cascade.h"
 
 #include <algorithm>
@@ -17,7 +18,8 @@ namespace {
 
 using far_ext::CascadeLevel;
 
-/// What positions and widths may be: the product of two squares has to fit into Scalar, in double sums of sixth powers.
+/// What positions and widths may be: the product of two squares has to fit into Scalar, in double
+/// sums of sixth powers.
 template <class Scalar>
 constexpr double kLargestLength = std::is_same_v<Scalar, float> ? 1e9 : 1e48;
 
@@ -25,12 +27,15 @@ template <class Scalar>
 void CheckLengths(std::span<double const> values, char const* what) {
     for (double value : values) {
         if (std::abs(value) <= kLargestLength<Scalar>) continue;
-        throw Error(ErrorCode::BadMesh, fmt::format("Cascade: {} of {}; they must be numbers up to {}", what, value, kLargestLength<Scalar>));
+        throw Error(ErrorCode::BadMesh,
+                    fmt::format("Cascade: {} of {}; they must be numbers up to {}", what, value,
+                                kLargestLength<Scalar>));
     }
 }
 
 constexpr double kLeastAngleRadians = 3.14159265358979323846 / 180.0, kLeastAreaRatio = 1e-8;
-constexpr double kLeastAreaLeft = 1e-12;  // of the start mesh': what is smaller has a shape of rounding
+constexpr double kLeastAreaLeft =
+    1e-12;  // of the start mesh': what is smaller has a shape of rounding
 
 template <class Scalar>
 CascadeRows<Scalar> Prolong(CascadeLevel const& level, CascadeRows<Scalar> const& coarse) {
@@ -39,7 +44,8 @@ CascadeRows<Scalar> Prolong(CascadeLevel const& level, CascadeRows<Scalar> const
         int const begin = level.parentOffsets[row], end = level.parentOffsets[row + 1];
         CascadeRow<Scalar> sum = coarse[level.parents[begin]];
         for (int k = begin + 1; k < end; ++k) sum += coarse[level.parents[k]];
-        fine[row] = end - begin == 1 ? sum : CascadeRow<Scalar>(sum / static_cast<Scalar>(end - begin));
+        fine[row] =
+            end - begin == 1 ? sum : CascadeRow<Scalar>(sum / static_cast<Scalar>(end - begin));
     });
     return fine;
 }
@@ -51,8 +57,8 @@ bool IsMoved(CascadeLevel const& level, CascadeOperator<Scalar> const& op, Index
 
 /// What nothing moves, is where it was from the start.
 template <class Scalar>
-void ReturnUnmovedRows(CascadeLevel const& level, CascadeOperator<Scalar> const& op, CascadeRows<Scalar> const& x0,
-                       CascadeRows<Scalar>& x) {
+void ReturnUnmovedRows(CascadeLevel const& level, CascadeOperator<Scalar> const& op,
+                       CascadeRows<Scalar> const& x0, CascadeRows<Scalar>& x) {
     ForEachRow(level.GetNumRows(), [&](Index row) {
         if (!IsMoved(level, op, row)) x[row] = x0[row];
     });
@@ -60,11 +66,12 @@ void ReturnUnmovedRows(CascadeLevel const& level, CascadeOperator<Scalar> const&
 
 /// Whether ReturnUnmovedRows would change anything.
 template <class Scalar>
-bool IsAnyElsewhere(CascadeLevel const& level, CascadeOperator<Scalar> const& op, CascadeRows<Scalar> const& x0,
-                    CascadeRows<Scalar> const& x) {
+bool IsAnyElsewhere(CascadeLevel const& level, CascadeOperator<Scalar> const& op,
+                    CascadeRows<Scalar> const& x0, CascadeRows<Scalar> const& x) {
     std::atomic<bool> isAny = false;
     ForEachRow(level.GetNumRows(), [&](Index row) {
-        if (!IsMoved(level, op, row) && (x[row] != x0[row]).any()) isAny.store(true, std::memory_order_relaxed);
+        if (!IsMoved(level, op, row) && (x[row] != x0[row]).any())
+            isAny.store(true, std::memory_order_relaxed);
     });
     return isAny;
 }
@@ -72,14 +79,16 @@ bool IsAnyElsewhere(CascadeLevel const& level, CascadeOperator<Scalar> const& op
 }  // namespace
 
 template <class Scalar>
-Cascade<Scalar>::Cascade(std::span<double const> positions, std::span<double const> widths, CascadeOptions const& options)
+Cascade<Scalar>::Cascade(std::span<double const> positions, std::span<double const> widths,
+                         CascadeOptions const& options)
     : _options(options) {
     bool const isLocal = options.width < 0.0;
     if (isLocal != (widths.size() * 3 == positions.size()) && !positions.empty()) {
         throw Error(ErrorCode::BadOption, "Cascade: give a width for all, or one per vertex");
     }
     if (std::is_same_v<Scalar, float> && options.solver != CascadeSolver::Jacobi) {
-        throw Error(ErrorCode::BadOption, "Cascade: in single precision only Jacobi sweeps are done");
+        throw Error(ErrorCode::BadOption,
+                    "Cascade: in single precision only Jacobi sweeps are done");
     }
     CheckLengths<Scalar>(positions, "a coordinate");
     CheckLengths<Scalar>(isLocal ? widths : std::span(&options.width, 1), "a width");
@@ -98,11 +107,13 @@ Cascade<Scalar>::Cascade(std::span<double const> positions, std::span<double con
 
 template <class Scalar>
 bool Cascade<Scalar>::IsDegenerate(MetricQuality const& quality) const {
-    return !(quality.minAngleRadians >= _leastAngle && quality.areaRatio >= _leastAreaRatio && quality.area >= kLeastAreaLeft * _startArea);
+    return !(quality.minAngleRadians >= _leastAngle && quality.areaRatio >= _leastAreaRatio &&
+             quality.area >= kLeastAreaLeft * _startArea);
 }
 
 template <class Scalar>
-CascadeStepReport Cascade<Scalar>::Step(CascadeLevel const& level, int iterations, std::span<double const> givenWidths) {
+CascadeStepReport Cascade<Scalar>::Step(CascadeLevel const& level, int iterations,
+                                        std::span<double const> givenWidths) {
     _level = &level;
     _x0 = Prolong(level, _x0);
     _x = Prolong(level, _x);
@@ -147,8 +158,9 @@ CascadeStepReport Cascade<Scalar>::Solve(int iterations) {
     report.areaRatio = quality.areaRatio;
     if (!_isFrozen && IsDegenerate(quality)) {
         _isFrozen = true;
-        if (_metric.empty()) _metric = present;                                 // there is no coarser level
-        if (_metric.size() != _x.size()) _metric = Prolong(level, _metric);  // it is still the coarser level's
+        if (_metric.empty()) _metric = present;  // there is no coarser level
+        if (_metric.size() != _x.size())
+            _metric = Prolong(level, _metric);  // it is still the coarser level's
     }
     report.isMetricFrozen = _isFrozen;
     if (_isFrozen) {
@@ -166,12 +178,15 @@ CascadeStepReport Cascade<Scalar>::Solve(int iterations) {
     if (!_isFrozen) _metric = present;
     ReturnUnmovedRows(level, _operator, _x0, _x);
     if constexpr (std::is_same_v<Scalar, double>) {
-        CascadeSolve const solve = _options.solver == CascadeSolver::Exact
-                                       ? SolveByCholesky(level, _operator, _x0, _x)
-                                       : SolveByConjugateGradients(level, _operator, _x0, _x, iterations, _options.tolerance, _options.progress);
+        CascadeSolve const solve =
+            _options.solver == CascadeSolver::Exact
+                ? SolveByCholesky(level, _operator, _x0, _x)
+                : SolveByConjugateGradients(level, _operator, _x0, _x, iterations,
+                                            _options.tolerance, _options.progress);
         report.sweeps = solve.iterations;
         report.residual = solve.residual;
-        report.converged = solve.converged || _options.tolerance == 0.0;  // a count was asked for, and done
+        report.converged =
+            solve.converged || _options.tolerance == 0.0;  // a count was asked for, and done
     }
     return report;
 }
@@ -180,8 +195,10 @@ template <class Scalar>
 void Cascade<Scalar>::Sweep(int iterations) {
     CascadeLevel const& level = *_level;
     CascadeRows<Scalar> const* from = &_x;
-    if (!_isFrozen && !_options.isGraph && iterations > 0 && !IsAnyElsewhere(level, _operator, _x0, _x)) {
-        _metric.swap(_x);  // the surface as it is now is the metric, and sweeps have two other buffers
+    if (!_isFrozen && !_options.isGraph && iterations > 0 &&
+        !IsAnyElsewhere(level, _operator, _x0, _x)) {
+        _metric.swap(
+            _x);  // the surface as it is now is the metric, and sweeps have two other buffers
         from = &_metric;
     } else {
         if (!_isFrozen) _metric = _options.isGraph ? _plane : _x;
@@ -194,9 +211,11 @@ void Cascade<Scalar>::Sweep(int iterations) {
     SweepInParts(*from, _x0, _next, _x, iterations);
 }
 
-/// From `from` to x, with `next` as the other buffer; so many at once that telling of them costs nothing.
+/// From `from` to x, with `next` as the other buffer; so many at once that telling of them costs
+/// nothing.
 template <class Scalar>
-void Cascade<Scalar>::SweepInParts(CascadeRows<Scalar> const& from, CascadeRows<Scalar> const& x0, CascadeRows<Scalar>& next, CascadeRows<Scalar>& x,
+void Cascade<Scalar>::SweepInParts(CascadeRows<Scalar> const& from, CascadeRows<Scalar> const& x0,
+                                   CascadeRows<Scalar>& next, CascadeRows<Scalar>& x,
                                    int iterations) const {
     constexpr int kPart = 64;
     for (int done = 0; done < iterations; done += kPart) {
@@ -214,7 +233,8 @@ std::vector<double> Cascade<Scalar>::GetPublic(CascadeRows<Scalar> const& rows) 
         size_t const vertex = _level ? static_cast<size_t>(_level->vertices[row]) : row;
         for (Eigen::Index c = 0; c < 3; ++c) {
             bool const isInPlane = _options.isGraph && c < 2;
-            values[3 * vertex + static_cast<size_t>(c)] = static_cast<double>(isInPlane ? _plane[row][c] : rows[row][c]);
+            values[3 * vertex + static_cast<size_t>(c)] =
+                static_cast<double>(isInPlane ? _plane[row][c] : rows[row][c]);
         }
     }
     return values;
@@ -234,7 +254,8 @@ template <class Scalar>
 std::vector<double> Cascade<Scalar>::GetWidths() const {
     std::vector<double> widths(_x.size(), _options.width);
     for (size_t row = 0; _options.width < 0.0 && row < _x.size(); ++row) {
-        widths[_level ? static_cast<size_t>(_level->vertices[row]) : row] = static_cast<double>(_x[row][3]);
+        widths[_level ? static_cast<size_t>(_level->vertices[row]) : row] =
+            static_cast<double>(_x[row][3]);
     }
     return widths;
 }
@@ -246,7 +267,8 @@ CascadeRows<Scalar> Cascade<Scalar>::MakeRows(std::span<double const> values) co
     for (size_t row = 0; row < _x.size(); ++row) {
         Index const vertex = _level ? _level->vertices[row] : static_cast<Index>(row);
         double const* const value = &values[3 * static_cast<size_t>(vertex)];
-        rows.emplace_back(static_cast<Scalar>(value[0]), static_cast<Scalar>(value[1]), static_cast<Scalar>(value[2]), Scalar(0));
+        rows.emplace_back(static_cast<Scalar>(value[0]), static_cast<Scalar>(value[1]),
+                          static_cast<Scalar>(value[2]), Scalar(0));
     }
     return rows;
 }
@@ -259,8 +281,11 @@ std::vector<double> Cascade<Scalar>::Filter(std::span<double const> values, int 
         CascadeRows<Scalar> next = y0;
         SweepInParts(y0, y0, next, y, iterations);
     } else if constexpr (std::is_same_v<Scalar, double>) {
-        if (_options.solver == CascadeSolver::Exact) SolveByCholesky(*_level, _operator, y0, y);
-        else SolveByConjugateGradients(*_level, _operator, y0, y, iterations, _options.tolerance, _options.progress);
+        if (_options.solver == CascadeSolver::Exact)
+            SolveByCholesky(*_level, _operator, y0, y);
+        else
+            SolveByConjugateGradients(*_level, _operator, y0, y, iterations, _options.tolerance,
+                                      _options.progress);
     }
     return GetPublic(y);
 }
@@ -268,15 +293,18 @@ std::vector<double> Cascade<Scalar>::Filter(std::span<double const> values, int 
 template <class Scalar>
 void Cascade<Scalar>::SetPositions(std::span<double const> positions) {
     CascadeRows<Scalar> const rows = MakeRows(positions);
-    ForEachRow(static_cast<Index>(_x.size()), [&](Index row) { _x[row].template head<3>() = rows[row].template head<3>(); });
+    ForEachRow(static_cast<Index>(_x.size()),
+               [&](Index row) { _x[row].template head<3>() = rows[row].template head<3>(); });
 }
 
 template class Cascade<float>;
 template class Cascade<double>;
 
 int CountSweeps(CascadeSolver solver, int finest, int levelsLeft, bool isBisection) {
-    double const exponent = (solver == CascadeSolver::Jacobi ? 2.0 : 1.5) * (isBisection ? 0.5 : 1.0);
-    return static_cast<int>(std::min(1e6, std::ceil(finest * std::exp2(exponent * levelsLeft) - 1e-9)));
+    double const exponent =
+        (solver == CascadeSolver::Jacobi ? 2.0 : 1.5) * (isBisection ? 0.5 : 1.0);
+    return static_cast<int>(
+        std::min(1e6, std::ceil(finest * std::exp2(exponent * levelsLeft) - 1e-9)));
 }
 
 }  // namespace limn::eval

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <functional>
@@ -13,30 +14,34 @@ enum class CascadeSolver { Exact, ConjugateGradients, Jacobi };
 
 struct CascadeOptions {
     CascadeSolver solver = CascadeSolver::ConjugateGradients;
-    double tolerance = 0.0;   ///< of the residual, where conjugate gradients stop
-    double width = -1.0;      ///< sigma of all rows; negative: that of each vertex, solved along with the positions
-    bool isGraph = false;     ///< filters heights z over the plane: its metric, x and y stay
-    std::function<void(double)> progress{};  ///< called now and then, but for Exact, with the share of a solve that is done; may throw
-    bool measuresResidual = true;  ///< of Jacobi sweeps, at the cost of about one
+    double tolerance = 0.0;  ///< of the residual, where conjugate gradients stop
+    double width = -1.0;   ///< sigma of all rows; negative: that of each vertex, solved along with
+                           ///< the positions
+    bool isGraph = false;  ///< filters heights z over the plane: its metric, x and y stay
+    std::function<void(double)> progress{};  ///< called now and then, but for Exact, with the share
+                                             ///< of a solve that is done; may throw
+    bool measuresResidual = true;            ///< of Jacobi sweeps, at the cost of about one
 };
 
 /// What a step did.
 struct CascadeStepReport {
     Index unknowns = 0;
-    int sweeps = 0;          ///< sweeps or iterations; 1 for the exact solver
-    double residual = 0.0;   ///< as CascadeSolve's; NaN where not measured
+    int sweeps = 0;         ///< sweeps or iterations; 1 for the exact solver
+    double residual = 0.0;  ///< as CascadeSolve's; NaN where not measured
     bool converged = true;
     double minAngleRadians = 0.0;  ///< of the metric the level was given, before any freezing
     double areaRatio = 0.0;
     bool isMetricFrozen = false;
 };
 
-/// The cascadic geometric filter. Each level starts from the coarser one, linearly interpolated, takes its metric from
-/// there, and solves (M + L) X = M X0 for a surface X near the start mesh X0.
+/// The cascadic geometric filter. Each level starts from the coarser one, linearly interpolated,
+/// takes its metric from there, and solves (M + L) X = M X0 for a surface X near the start mesh X0.
 ///
-/// Metric   Where it degenerates (an angle below a degree, or half of the start mesh's smallest if that is less; an area
-///          below 1e-8 of the mean, all of it below 1e-12 of the start mesh's), the level and all finer ones keep that of the level before, interpolated.
-/// Widths   of vertices are filtered like positions, but 0 stays 0: where none was painted, nothing ever moves.
+/// Metric   Where it degenerates (an angle below a degree, or half of the start mesh's smallest if
+///          that is less; an area below 1e-8 of the mean, all of it below 1e-12 of the start
+///          mesh's), the level and all finer ones keep that of the level before, interpolated.
+/// Widths   of vertices are filtered like positions, but 0 stays 0: where none was painted, nothing
+///          ever moves.
 /// Scalar   float: Jacobi only. All sums and solves have the same bits whatever the threads.
 /// Source   [Diewald02] Sec. 5 to 8
 template <class Scalar>
@@ -44,15 +49,18 @@ class Cascade {
 public:
     /// \param positions  3 per vertex of the start mesh
     /// \param widths     sigma per vertex; empty with a width for all
-    /// \throws Error     BadOption: sizes that do not fit, a solver that Scalar does not have.  BadMesh: what is no number, or
-    ///                   beyond 1e48 (in float 1e9)
-    Cascade(std::span<double const> positions, std::span<double const> widths, CascadeOptions const& options);
+    /// \throws Error     BadOption: sizes that do not fit, a solver that Scalar does not have.
+    ///                   BadMesh: what is no number, or beyond 1e48 (in float 1e9)
+    Cascade(std::span<double const> positions, std::span<double const> widths,
+            CascadeOptions const& options);
 
     /// Goes to the next level. \param level  kept by reference until the next call
     ///
-    /// \param givenWidths  sigma per vertex of the level: used as they are, and not filtered. Empty: those of the
-    ///                     level before, interpolated, and solved along with the positions
-    CascadeStepReport Step(far_ext::CascadeLevel const& level, int iterations, std::span<double const> givenWidths = {});
+    /// \param givenWidths  sigma per vertex of the level: used as they are, and not filtered.
+    ///                     Empty: those of the level before, interpolated, and solved along with
+    ///                     the positions
+    CascadeStepReport Step(far_ext::CascadeLevel const& level, int iterations,
+                           std::span<double const> givenWidths = {});
 
     /// Solves once more on the same level, with the metric of the present surface.
     CascadeStepReport Repeat(int iterations);
@@ -62,12 +70,14 @@ public:
     std::vector<double> GetStartPositions() const;
     std::vector<double> GetWidths() const;
 
-    /// The filter of the level reached, on other values: solves (M + L) Y = M Y0 with the operator of the last step.
+    /// The filter of the level reached, on other values: solves (M + L) Y = M Y0 with the operator
+    /// of the last step.
     ///
     /// \param values  Y0, 3 per vertex; rows that stay keep theirs. \param iterations  as Step's
     std::vector<double> Filter(std::span<double const> values, int iterations) const;
 
-    /// Replaces the surface, e.g. by one of the right volume: the next level starts there. \param positions  as GetPositions
+    /// Replaces the surface, e.g. by one of the right volume: the next level starts there. \param
+    /// positions  as GetPositions
     void SetPositions(std::span<double const> positions);
 
     // Rows of the level, for those that go on from them.
@@ -78,7 +88,8 @@ public:
 private:
     CascadeStepReport Solve(int iterations);
     void Sweep(int iterations);
-    void SweepInParts(CascadeRows<Scalar> const& from, CascadeRows<Scalar> const& x0, CascadeRows<Scalar>& next, CascadeRows<Scalar>& x, int iterations) const;
+    void SweepInParts(CascadeRows<Scalar> const& from, CascadeRows<Scalar> const& x0,
+                      CascadeRows<Scalar>& next, CascadeRows<Scalar>& x, int iterations) const;
     std::vector<double> GetPublic(CascadeRows<Scalar> const& rows) const;
     CascadeRows<Scalar> MakeRows(std::span<double const> values) const;
     bool IsDegenerate(MetricQuality const& quality) const;
@@ -86,7 +97,8 @@ private:
     CascadeOptions _options;
     far_ext::CascadeLevel const* _level = nullptr;
     CascadeRows<Scalar> _x, _x0;
-    CascadeRows<Scalar> _metric;  // the last one not degenerate; of the coarser level until that is known of this one's
+    CascadeRows<Scalar> _metric;  // the last one not degenerate; of the coarser level until that is
+                                  // known of this one's
     CascadeRows<Scalar> _next;    // the other buffer of sweeps
     CascadeRows<Scalar> _plane;   // of a graph: x and y
     CascadeOperator<Scalar> _operator;
@@ -94,8 +106,9 @@ private:
     double _leastAngle = -1.0, _leastAreaRatio = 0.0, _startArea = 0.0;
 };
 
-/// Sweeps on a level so that all together cost about as much as the finest: n 2^(2 (kmax - k)) for Jacobi,
-/// n 2^(1.5 (kmax - k)) for conjugate gradients; half of the exponents for bisection. At most 1e6.
+/// Sweeps on a level so that all together cost about as much as the finest: n 2^(2 (kmax - k)) for
+/// Jacobi, n 2^(1.5 (kmax - k)) for conjugate gradients; half of the exponents for bisection. At
+/// most 1e6.
 ///
 /// \param levelsLeft  kmax - k
 /// Source  [Diewald02] Sec. 6, step 5

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "far_ext/types.h"
@@ -18,7 +19,8 @@ struct CascadeRings {
 
 CascadeRings GetRings(far_ext::CascadeLevel const& level);
 
-/// Where the operator of a level goes and what it is made from, see CascadeOperator. Rows of a metric are 4 Scalars.
+/// Where the operator of a level goes and what it is made from, see CascadeOperator. Rows of a
+/// metric are 4 Scalars.
 template <class Scalar>
 struct CascadeBuildJob {
     CascadeRings rings;
@@ -46,12 +48,13 @@ struct CascadeSweepJob {
 
 /// The operator's rows begin..end-1.
 ///
-/// The same bits on every CPU and whichever ranges the work is cut into: one source, compiled per instruction set without
-/// contraction; rows lie side by side in registers and no sum crosses rows.
+/// The same bits on every CPU and whichever ranges the work is cut into: one source, compiled per
+/// instruction set without contraction; rows lie side by side in registers and no sum crosses rows.
 CascadeShapes<float> BuildCascadeRows(CascadeBuildJob<float> const& job, Index begin, Index end);
 CascadeShapes<double> BuildCascadeRows(CascadeBuildJob<double> const& job, Index begin, Index end);
 
-/// Rows begin..end-1 of a sweep; the same bits likewise. Entries of a ring are added as FindResidual adds them.
+/// Rows begin..end-1 of a sweep; the same bits likewise. Entries of a ring are added as
+/// FindResidual adds them.
 void SweepCascadeRows(CascadeSweepJob<float> const& job, Index begin, Index end);
 void SweepCascadeRows(CascadeSweepJob<double> const& job, Index begin, Index end);
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #define LIMN_KERNEL avx2
 #define LIMN_KERNEL_LANES 8
 #include "eval/cascade/cascade_kernel.inc"

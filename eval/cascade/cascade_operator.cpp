@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/cascade/cascade_operator.h"
 
 #include <algorithm>
@@ -15,32 +16,42 @@ using far_ext::CascadeLevel;
 
 /// What is known of the triangles at a block of surface rows.
 struct BlockShapes {
-    double maxCotangent = -std::numeric_limits<double>::max(), minArea = std::numeric_limits<double>::max();
+    double maxCotangent = -std::numeric_limits<double>::max(),
+           minArea = std::numeric_limits<double>::max();
     double sumMasses = 0.0, numTriangles = 0.0;
 };
 
 template <class Scalar>
-BlockShapes BuildBlock(CascadeLevel const& level, CascadeBuildJob<Scalar> const& job, Index begin, Index end) {
+BlockShapes BuildBlock(CascadeLevel const& level, CascadeBuildJob<Scalar> const& job, Index begin,
+                       Index end) {
     auto const [maxCotangent, minArea] = BuildCascadeRows(job, begin, end);
     BlockShapes shapes{static_cast<double>(maxCotangent), static_cast<double>(minArea)};
     end = std::min(end, level.numSurface);
-    for (Index row = begin; row < end; ++row) shapes.sumMasses += static_cast<double>(job.masses[row]);
+    for (Index row = begin; row < end; ++row)
+        shapes.sumMasses += static_cast<double>(job.masses[row]);
     if (begin < end) {
-        int const numEntries = level.offsets[end] - level.offsets[begin], numOpen = end - std::max(begin, std::min(end, level.numClosed));
-        shapes.numTriangles = level.faceSize == 3 ? numEntries - numOpen : 1.5 * (numEntries - numOpen);  // 3 in the corner of a quad
+        int const numEntries = level.offsets[end] - level.offsets[begin],
+                  numOpen = end - std::max(begin, std::min(end, level.numClosed));
+        shapes.numTriangles = level.faceSize == 3
+                                  ? numEntries - numOpen
+                                  : 1.5 * (numEntries - numOpen);  // 3 in the corner of a quad
     }
     return shapes;
 }
 
 template <class Scalar>
-MetricQuality Build(CascadeLevel const& level, CascadeRows<Scalar> const& metric, Scalar width, CascadeOperator<Scalar>& op) {
+MetricQuality Build(CascadeLevel const& level, CascadeRows<Scalar> const& metric, Scalar width,
+                    CascadeOperator<Scalar>& op) {
     op.edges.resize(level.neighbours.size());
     op.masses.resize(static_cast<size_t>(level.numUnknowns));
     op.diagonals.resize(static_cast<size_t>(level.numUnknowns));
-    CascadeBuildJob<Scalar> const job{GetRings(level),           metric.data()->data(), width < Scalar(0),    Scalar(0.5) * width * width,
-                                      op.edges.data(), op.masses.data(),       op.diagonals.data()};
+    CascadeBuildJob<Scalar> const job{
+        GetRings(level), metric.data()->data(), width < Scalar(0),  Scalar(0.5) * width * width,
+        op.edges.data(), op.masses.data(),      op.diagonals.data()};
     std::vector<BlockShapes> blocks(static_cast<size_t>(level.numUnknowns / kRowsPerBlock) + 1);
-    ForEachBlock(level.numUnknowns, [&](Index begin, Index end, size_t block) { blocks[block] = BuildBlock(level, job, begin, end); });
+    ForEachBlock(level.numUnknowns, [&](Index begin, Index end, size_t block) {
+        blocks[block] = BuildBlock(level, job, begin, end);
+    });
     BlockShapes all;
     for (BlockShapes const& block : blocks) {
         all.maxCotangent = std::max(all.maxCotangent, block.maxCotangent);
@@ -56,11 +67,13 @@ MetricQuality Build(CascadeLevel const& level, CascadeRows<Scalar> const& metric
 
 }  // namespace
 
-MetricQuality BuildOperator(CascadeLevel const& level, CascadeRows<float> const& metric, float width, CascadeOperator<float>& op) {
+MetricQuality BuildOperator(CascadeLevel const& level, CascadeRows<float> const& metric,
+                            float width, CascadeOperator<float>& op) {
     return Build(level, metric, width, op);
 }
 
-MetricQuality BuildOperator(CascadeLevel const& level, CascadeRows<double> const& metric, double width, CascadeOperator<double>& op) {
+MetricQuality BuildOperator(CascadeLevel const& level, CascadeRows<double> const& metric,
+                            double width, CascadeOperator<double>& op) {
     return Build(level, metric, width, op);
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/cascade/cascade_sweep.h"
 
 #include <vector>
@@ -12,20 +13,23 @@ namespace {
 using far_ext::CascadeLevel;
 
 template <class Scalar>
-CascadeSweepJob<Scalar> MakeJob(CascadeLevel const& level, CascadeOperator<Scalar> const& op, CascadeRows<Scalar> const& x,
-                                CascadeRows<Scalar> const& x0, CascadeRows<Scalar>& to) {
-    return {GetRings(level),        op.edges.data(),  op.masses.data(),   op.diagonals.data(),
+CascadeSweepJob<Scalar> MakeJob(CascadeLevel const& level, CascadeOperator<Scalar> const& op,
+                                CascadeRows<Scalar> const& x, CascadeRows<Scalar> const& x0,
+                                CascadeRows<Scalar>& to) {
+    return {GetRings(level),        op.edges.data(),  op.masses.data(),  op.diagonals.data(),
             Scalar(kJacobiDamping), x.data()->data(), x0.data()->data(), to.data()->data()};
 }
 
 template <class Scalar>
 void Sweep(CascadeLevel const& level, CascadeSweepJob<Scalar> const& job) {
-    ForEachBlock(level.numUnknowns, [&](Index begin, Index end, size_t) { SweepCascadeRows(job, begin, end); });
+    ForEachBlock(level.numUnknowns,
+                 [&](Index begin, Index end, size_t) { SweepCascadeRows(job, begin, end); });
 }
 
 template <class Scalar>
-void SweepAll(CascadeLevel const& level, CascadeOperator<Scalar> const& op, CascadeRows<Scalar> const& x,
-              CascadeRows<Scalar> const& x0, CascadeRows<Scalar>& odd, CascadeRows<Scalar>& even, int count) {
+void SweepAll(CascadeLevel const& level, CascadeOperator<Scalar> const& op,
+              CascadeRows<Scalar> const& x, CascadeRows<Scalar> const& x0, CascadeRows<Scalar>& odd,
+              CascadeRows<Scalar>& even, int count) {
     int const perPass = CountStepsPerPass(level.numUnknowns, level.bandwidth);
     std::vector<CascadeSweepJob<Scalar>> jobs;
     for (int sweep = 1; sweep <= count; ++sweep) {
@@ -36,7 +40,9 @@ void SweepAll(CascadeLevel const& level, CascadeOperator<Scalar> const& op, Casc
             Sweep(level, jobs[0]);
         } else {
             RunStepsInOnePass(static_cast<Index>(jobs.size()), level.numUnknowns, level.bandwidth,
-                              [&](Index step, Index begin, Index end, size_t) { SweepCascadeRows(jobs[step], begin, end); });
+                              [&](Index step, Index begin, Index end, size_t) {
+                                  SweepCascadeRows(jobs[step], begin, end);
+                              });
         }
         jobs.clear();
     }
@@ -44,23 +50,27 @@ void SweepAll(CascadeLevel const& level, CascadeOperator<Scalar> const& op, Casc
 
 }  // namespace
 
-void SweepJacobi(CascadeLevel const& level, CascadeOperator<float> const& op, CascadeRows<float> const& x,
-                 CascadeRows<float> const& x0, CascadeRows<float>& to) {
+void SweepJacobi(CascadeLevel const& level, CascadeOperator<float> const& op,
+                 CascadeRows<float> const& x, CascadeRows<float> const& x0,
+                 CascadeRows<float>& to) {
     Sweep(level, MakeJob(level, op, x, x0, to));
 }
 
-void SweepJacobi(CascadeLevel const& level, CascadeOperator<double> const& op, CascadeRows<double> const& x,
-                 CascadeRows<double> const& x0, CascadeRows<double>& to) {
+void SweepJacobi(CascadeLevel const& level, CascadeOperator<double> const& op,
+                 CascadeRows<double> const& x, CascadeRows<double> const& x0,
+                 CascadeRows<double>& to) {
     Sweep(level, MakeJob(level, op, x, x0, to));
 }
 
-void SweepJacobi(CascadeLevel const& level, CascadeOperator<float> const& op, CascadeRows<float> const& x,
-                 CascadeRows<float> const& x0, CascadeRows<float>& odd, CascadeRows<float>& even, int count) {
+void SweepJacobi(CascadeLevel const& level, CascadeOperator<float> const& op,
+                 CascadeRows<float> const& x, CascadeRows<float> const& x0, CascadeRows<float>& odd,
+                 CascadeRows<float>& even, int count) {
     SweepAll(level, op, x, x0, odd, even, count);
 }
 
-void SweepJacobi(CascadeLevel const& level, CascadeOperator<double> const& op, CascadeRows<double> const& x,
-                 CascadeRows<double> const& x0, CascadeRows<double>& odd, CascadeRows<double>& even, int count) {
+void SweepJacobi(CascadeLevel const& level, CascadeOperator<double> const& op,
+                 CascadeRows<double> const& x, CascadeRows<double> const& x0,
+                 CascadeRows<double>& odd, CascadeRows<double>& even, int count) {
     SweepAll(level, op, x, x0, odd, even, count);
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/cascade/critical_width.h"
 
 #include <algorithm>
@@ -19,7 +20,8 @@ std::vector<double> Scale(std::vector<double> values, double factor) {
 
 }  // namespace
 
-std::vector<double> FindMeanRadii(std::span<double const> positions, std::span<int const> componentOfVertex, int numComponents) {
+std::vector<double> FindMeanRadii(std::span<double const> positions,
+                                  std::span<int const> componentOfVertex, int numComponents) {
     size_t const count = static_cast<size_t>(numComponents);
     std::vector<std::array<double, 3>> means(count, {0.0, 0.0, 0.0});
     std::vector<double> numVertices(count, 0.0), radii(count, 0.0);
@@ -36,35 +38,50 @@ std::vector<double> FindMeanRadii(std::span<double const> positions, std::span<i
         if (componentOfVertex[vertex] < 0) continue;
         size_t const component = static_cast<size_t>(componentOfVertex[vertex]);
         auto const& mean = means[component];
-        radii[component] += std::hypot(positions[3 * vertex] - mean[0], positions[3 * vertex + 1] - mean[1], positions[3 * vertex + 2] - mean[2]) /
-                            numVertices[component];
+        radii[component] +=
+            std::hypot(positions[3 * vertex] - mean[0], positions[3 * vertex + 1] - mean[1],
+                       positions[3 * vertex + 2] - mean[2]) /
+            numVertices[component];
     }
     return radii;
 }
 
-double FindCriticalFactor(std::span<far_ext::CascadeLevel const> levels, std::span<double const> positions, CascadeWidths const& widths,
-                          std::span<int const> componentOfVertex, std::span<char const> isWanted, std::function<void()> const& check) {
+double FindCriticalFactor(std::span<far_ext::CascadeLevel const> levels,
+                          std::span<double const> positions, CascadeWidths const& widths,
+                          std::span<int const> componentOfVertex, std::span<char const> isWanted,
+                          std::function<void()> const& check) {
     int const numComponents = static_cast<int>(isWanted.size());
     auto const carries = [&](double factor) {
-        CascadeOptions const options{.tolerance = kTolerance, .width = widths.constant < 0.0 ? -1.0 : factor * widths.constant};
-        Cascade<double> cascade(positions, widths.constant < 0.0 ? Scale(widths.atVertices, factor) : std::vector<double>{}, options);
+        CascadeOptions const options{
+            .tolerance = kTolerance,
+            .width = widths.constant < 0.0 ? -1.0 : factor * widths.constant};
+        Cascade<double> cascade(
+            positions,
+            widths.constant < 0.0 ? Scale(widths.atVertices, factor) : std::vector<double>{},
+            options);
         for (size_t level = 0; level < levels.size(); ++level) {
             check();
-            cascade.Step(levels[level], kMaxIterations, widths.atLevels.empty() ? std::vector<double>{} : Scale(widths.atLevels[level], factor));
+            cascade.Step(levels[level], kMaxIterations,
+                         widths.atLevels.empty() ? std::vector<double>{}
+                                                 : Scale(widths.atLevels[level], factor));
         }
-        auto const start = FindMeanRadii(cascade.GetStartPositions(), componentOfVertex, numComponents);
+        auto const start =
+            FindMeanRadii(cascade.GetStartPositions(), componentOfVertex, numComponents);
         constexpr int kMaxRepeats = 300;
         constexpr double kSettled = 1e-5;  // nothing moves by more in a step
-        std::vector<double> radii = FindMeanRadii(cascade.GetPositions(), componentOfVertex, numComponents);
+        std::vector<double> radii =
+            FindMeanRadii(cascade.GetPositions(), componentOfVertex, numComponents);
         for (int repeat = 0; repeat < kMaxRepeats; ++repeat) {
             check();
             cascade.Repeat(kMaxIterations);
-            auto const next = FindMeanRadii(cascade.GetPositions(), componentOfVertex, numComponents);
+            auto const next =
+                FindMeanRadii(cascade.GetPositions(), componentOfVertex, numComponents);
             double largestChange = 0.0;
             for (size_t component = 0; component < isWanted.size(); ++component) {
                 if (!isWanted[component] || !(start[component] > 0.0)) continue;
                 if (next[component] < kLeastRadiusRatio * start[component]) return false;
-                largestChange = std::max(largestChange, std::abs(next[component] - radii[component]) / start[component]);
+                largestChange = std::max(
+                    largestChange, std::abs(next[component] - radii[component]) / start[component]);
             }
             if (largestChange < kSettled) return true;
             radii = next;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/cascade/enclosed_volume.h"
 
 #include <algorithm>
@@ -13,7 +14,8 @@ namespace {
 using far_ext::CascadeMesh;
 using Vector = Eigen::Vector3d;
 
-/// Calls visit(a, b, c, share) for all triangles of a mesh; those of a quad's two diagonals have half shares.
+/// Calls visit(a, b, c, share) for all triangles of a mesh; those of a quad's two diagonals have
+/// half shares.
 template <class Visit>
 void ForEachTriangle(CascadeMesh const& mesh, Visit const& visit) {
     size_t const n = static_cast<size_t>(mesh.faceSize);
@@ -27,7 +29,9 @@ void ForEachTriangle(CascadeMesh const& mesh, Visit const& visit) {
     }
 }
 
-Vector At(std::span<double const> positions, Index vertex) { return Vector(&positions[3 * static_cast<size_t>(vertex)]); }
+Vector At(std::span<double const> positions, Index vertex) {
+    return Vector(&positions[3 * static_cast<size_t>(vertex)]);
+}
 
 /// d volume / d position, per vertex.
 std::vector<Vector> FindGradients(CascadeMesh const& mesh, std::span<double const> positions) {
@@ -43,15 +47,16 @@ std::vector<Vector> FindGradients(CascadeMesh const& mesh, std::span<double cons
 
 }  // namespace
 
-std::vector<double> MeasureVolumes(CascadeMesh const& mesh, std::span<int const> componentOfVertex, int numComponents,
-                                   std::span<double const> positions) {
+std::vector<double> MeasureVolumes(CascadeMesh const& mesh, std::span<int const> componentOfVertex,
+                                   int numComponents, std::span<double const> positions) {
     std::vector<double> volumes(static_cast<size_t>(numComponents), 0.0);
     std::vector<Index> origins(volumes.size(), -1);  // near the surface: far ones would cost digits
     ForEachTriangle(mesh, [&](Index a, Index b, Index c, double share) {
         size_t const component = static_cast<size_t>(componentOfVertex[a]);
         if (origins[component] < 0) origins[component] = a;
         Vector const origin = At(positions, origins[component]);
-        Vector const p = At(positions, a) - origin, q = At(positions, b) - origin, r = At(positions, c) - origin;
+        Vector const p = At(positions, a) - origin, q = At(positions, b) - origin,
+                     r = At(positions, c) - origin;
         volumes[component] += share / 6.0 * p.dot(q.cross(r));
     });
     return volumes;
@@ -67,8 +72,9 @@ std::vector<double> FindVolumeNormals(CascadeMesh const& mesh, std::span<double 
     return normals;
 }
 
-std::vector<char> RestoreVolumes(CascadeMesh const& mesh, std::span<int const> componentOfVertex, std::span<char const> isWanted,
-                                 std::span<double const> volumes, std::span<double const> directions, std::span<double> positions) {
+std::vector<char> RestoreVolumes(CascadeMesh const& mesh, std::span<int const> componentOfVertex,
+                                 std::span<char const> isWanted, std::span<double const> volumes,
+                                 std::span<double const> directions, std::span<double> positions) {
     size_t const numComponents = isWanted.size();
     constexpr int kNewtonSteps = 20;
     constexpr double kTolerance = 1e-12, kMetTolerance = 1e-10;
@@ -76,16 +82,19 @@ std::vector<char> RestoreVolumes(CascadeMesh const& mesh, std::span<int const> c
     std::vector<double> const start(positions.begin(), positions.end());
     std::vector<double> factors(numComponents, 0.0);
     for (int step = 0; step <= kNewtonSteps; ++step) {
-        auto const present = MeasureVolumes(mesh, componentOfVertex, static_cast<int>(numComponents), positions);
+        auto const present =
+            MeasureVolumes(mesh, componentOfVertex, static_cast<int>(numComponents), positions);
         auto const gradients = FindGradients(mesh, positions);
         std::vector<double> slopes(numComponents, 0.0);
         for (size_t vertex = 0; vertex < gradients.size(); ++vertex) {
             if (componentOfVertex[vertex] < 0) continue;
-            slopes[static_cast<size_t>(componentOfVertex[vertex])] += gradients[vertex].dot(At(directions, static_cast<Index>(vertex)));
+            slopes[static_cast<size_t>(componentOfVertex[vertex])] +=
+                gradients[vertex].dot(At(directions, static_cast<Index>(vertex)));
         }
         bool isDone = true;
         for (size_t component = 0; component < numComponents; ++component) {
-            double const miss = volumes[component] - present[component], size = std::abs(volumes[component]);
+            double const miss = volumes[component] - present[component],
+                         size = std::abs(volumes[component]);
             isMet[component] = !isWanted[component] || std::abs(miss) <= kMetTolerance * size;
             if (!isWanted[component] || std::abs(miss) <= kTolerance * size) continue;
             double const change = miss / slopes[component];
@@ -97,11 +106,14 @@ std::vector<char> RestoreVolumes(CascadeMesh const& mesh, std::span<int const> c
         for (size_t vertex = 0; vertex < gradients.size(); ++vertex) {
             if (componentOfVertex[vertex] < 0) continue;
             double const factor = factors[static_cast<size_t>(componentOfVertex[vertex])];
-            for (size_t i = 3 * vertex; i < 3 * vertex + 3; ++i) positions[i] = start[i] + factor * directions[i];
+            for (size_t i = 3 * vertex; i < 3 * vertex + 3; ++i)
+                positions[i] = start[i] + factor * directions[i];
         }
     }
-    for (size_t vertex = 0; vertex < componentOfVertex.size(); ++vertex) {  // what cannot be met, stays
-        if (componentOfVertex[vertex] < 0 || isMet[static_cast<size_t>(componentOfVertex[vertex])]) continue;
+    for (size_t vertex = 0; vertex < componentOfVertex.size();
+         ++vertex) {  // what cannot be met, stays
+        if (componentOfVertex[vertex] < 0 || isMet[static_cast<size_t>(componentOfVertex[vertex])])
+            continue;
         std::copy_n(&start[3 * vertex], 3, &positions[3 * vertex]);
     }
     return isMet;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/differential/area_fit.h"
 
 #include <algorithm>
@@ -12,22 +13,25 @@ namespace limn::eval {
 namespace {
 
 /// Positions of the vertices of every level: each keeps its own place of the last one.
-std::vector<std::vector<double>> RestrictPositions(Far::TopologyRefiner const& refiner, std::span<double const> positions) {
+std::vector<std::vector<double>> RestrictPositions(Far::TopologyRefiner const& refiner,
+                                                   std::span<double const> positions) {
     std::vector<std::vector<double>> levels(static_cast<size_t>(refiner.GetMaxLevel()) + 1);
     levels.back().assign(positions.begin(), positions.end());
     for (int k = refiner.GetMaxLevel() - 1; k >= 0; --k) {
         auto const level = refiner.GetLevel(k);
         for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
-            double const* const p = &levels[k + 1][3 * static_cast<size_t>(level.GetVertexChildVertex(vertex))];
+            double const* const p =
+                &levels[k + 1][3 * static_cast<size_t>(level.GetVertexChildVertex(vertex))];
             levels[k].insert(levels[k].end(), {p[0], p[1], p[2]});
         }
     }
     return levels;
 }
 
-/// Levels below the last only help to converge: a wide angle's negative weight would hinder there, and where a
-/// triangle has no area uniform weights serve.
-std::vector<double> FindCoarseWeights(Far::TopologyLevel const& level, std::span<double const> positions) {
+/// Levels below the last only help to converge: a wide angle's negative weight would hinder there,
+/// and where a triangle has no area uniform weights serve.
+std::vector<double> FindCoarseWeights(Far::TopologyLevel const& level,
+                                      std::span<double const> positions) {
     try {
         auto weights = far_ext::FindCotangentWeights(level, positions);
         for (double& weight : weights) weight = std::max(weight, 1e-3);
@@ -38,25 +42,33 @@ std::vector<double> FindCoarseWeights(Far::TopologyLevel const& level, std::span
 }
 
 /// Cotangent weights per edge of every level.
-std::vector<EdgeWeights> FindWeights(Far::TopologyRefiner const& refiner, std::span<double const> positions) {
+std::vector<EdgeWeights> FindWeights(Far::TopologyRefiner const& refiner,
+                                     std::span<double const> positions) {
     auto const places = RestrictPositions(refiner, positions);
     std::vector<EdgeWeights> weights;
-    for (int k = 0; k < refiner.GetMaxLevel(); ++k) weights.push_back({FindCoarseWeights(refiner.GetLevel(k), places[k]), {}});
-    weights.push_back({far_ext::FindCotangentWeights(refiner.GetLevel(refiner.GetMaxLevel()), positions), {}});
+    for (int k = 0; k < refiner.GetMaxLevel(); ++k)
+        weights.push_back({FindCoarseWeights(refiner.GetLevel(k), places[k]), {}});
+    weights.push_back(
+        {far_ext::FindCotangentWeights(refiner.GetLevel(refiner.GetMaxLevel()), positions), {}});
     return weights;
 }
 
 /// Where Delta is missed: Delta - A^-1 L V, 0 at fixed vertices.
 struct Misfit {
     std::vector<double> values, areas;  ///< 3 and 1 per vertex
-    double squares = 0.0, scale = 0.0;  ///< area-weighted sums of squares: of the misfit, and of Delta
+    double squares = 0.0,
+           scale = 0.0;  ///< area-weighted sums of squares: of the misfit, and of Delta
 };
 
 class AreaFit {
 public:
-    AreaFit(Far::TopologyRefiner const& refiner, Multigrid& multigrid, LaplacianBuilder const& build,
-            std::span<double const> deltas)
-        : _refiner(refiner), _multigrid(multigrid), _finest(multigrid.GetLevels().back()), _build(build), _deltas(deltas) {}
+    AreaFit(Far::TopologyRefiner const& refiner, Multigrid& multigrid,
+            LaplacianBuilder const& build, std::span<double const> deltas)
+        : _refiner(refiner),
+          _multigrid(multigrid),
+          _finest(multigrid.GetLevels().back()),
+          _build(build),
+          _deltas(deltas) {}
 
     Misfit Measure(std::span<double const> positions) const {
         auto const laplacian = _build(positions);
@@ -66,7 +78,8 @@ public:
             Index const vertex = _finest.vertices[row];
             double const area = laplacian.areas[vertex];
             for (size_t c = 0, i = 3 * static_cast<size_t>(vertex); c < 3; ++c, ++i) {
-                misfit.values[i] = row < _finest.numUnknowns ? _deltas[i] - misfit.values[i] / area : 0.0;
+                misfit.values[i] =
+                    row < _finest.numUnknowns ? _deltas[i] - misfit.values[i] / area : 0.0;
                 misfit.squares += area * misfit.values[i] * misfit.values[i];
                 if (row < _finest.numUnknowns) misfit.scale += area * _deltas[i] * _deltas[i];
             }
@@ -93,7 +106,8 @@ public:
     int GetNumIterations() const { return _numIterations; }
 
 private:
-    double Product(std::vector<double> const& a, std::vector<double> const& b, Misfit const& misfit) const {
+    double Product(std::vector<double> const& a, std::vector<double> const& b,
+                   Misfit const& misfit) const {
         double sum = 0.0;
         for (size_t i = 0; i < a.size(); ++i) sum += misfit.areas[i / 3] * a[i] * b[i];
         return sum;
@@ -131,7 +145,8 @@ void AddTimes(std::vector<double>& to, double factor, std::vector<double> const&
     for (size_t i = 0; i < to.size(); ++i) to[i] += factor * values[i];
 }
 
-/// The move that minimises |misfit - J move|, J z = (misfit(V) - misfit(V + e z)) / e, over a Krylov space.
+/// The move that minimises |misfit - J move|, J z = (misfit(V) - misfit(V + e z)) / e, over a
+/// Krylov space.
 std::vector<double> AreaFit::FindStep(std::span<double const> positions, Misfit const& misfit) {
     constexpr int kMaxDimension = 12;
     constexpr double kEnough = 0.05;  // of the misfit: farther than linearisation reaches
@@ -145,8 +160,10 @@ std::vector<double> AreaFit::FindStep(std::span<double const> positions, Misfit 
     for (int k = 0; k < kMaxDimension; ++k) {
         std::vector<double> rightSide = basis[k], move(positions.size(), 0.0);
         for (size_t i = 0; i < rightSide.size(); ++i) rightSide[i] *= misfit.areas[i / 3];
-        _numIterations += _multigrid.Solve(rightSide, move, {.tolerance = 1e-2, .maxIterations = 20}).iterations;
-        double const length = FindLargest(move), share = length > 0.0 ? 1e-6 * extent / length : 1.0;
+        _numIterations +=
+            _multigrid.Solve(rightSide, move, {.tolerance = 1e-2, .maxIterations = 20}).iterations;
+        double const length = FindLargest(move),
+                     share = length > 0.0 ? 1e-6 * extent / length : 1.0;
         Misfit const there = TryMove(positions, move, share, moved);
         if (!std::isfinite(there.squares)) break;
         std::vector<double> image = misfit.values;
@@ -161,23 +178,28 @@ std::vector<double> AreaFit::FindStep(std::span<double const> positions, Misfit 
         Eigen::MatrixXd const part = hessenberg.topLeftCorner(k + 2, k + 1);
         Eigen::VectorXd const first = Eigen::VectorXd::Unit(k + 2, 0) * size;
         weights = part.colPivHouseholderQr().solve(first);
-        if ((first - part * weights).norm() < kEnough * size || !(hessenberg(k + 1, k) > 0.0)) break;
+        if ((first - part * weights).norm() < kEnough * size || !(hessenberg(k + 1, k) > 0.0))
+            break;
         for (double& value : image) value /= hessenberg(k + 1, k);
         basis.push_back(std::move(image));
     }
     std::vector<double> step(positions.size(), 0.0);
-    for (size_t k = 0; k < moves.size(); ++k) AddTimes(step, weights[static_cast<Index>(k)], moves[k]);
+    for (size_t k = 0; k < moves.size(); ++k)
+        AddTimes(step, weights[static_cast<Index>(k)], moves[k]);
     return step;
 }
 
 }  // namespace
 
-AreaFitReport FitAreaLaplacian(Far::TopologyRefiner const& refiner, Multigrid& multigrid, LaplacianBuilder const& build,
-                               std::span<double const> deltas, std::span<double> positions, AreaFitOptions const& options) {
+AreaFitReport FitAreaLaplacian(Far::TopologyRefiner const& refiner, Multigrid& multigrid,
+                               LaplacianBuilder const& build, std::span<double const> deltas,
+                               std::span<double> positions, AreaFitOptions const& options) {
     AreaFit fit(refiner, multigrid, build, deltas);
     AreaFitReport report;
     Misfit misfit = fit.Measure(positions);
-    auto const relative = [&] { return misfit.scale > 0.0 ? std::sqrt(misfit.squares / misfit.scale) : 0.0; };
+    auto const relative = [&] {
+        return misfit.scale > 0.0 ? std::sqrt(misfit.squares / misfit.scale) : 0.0;
+    };
     report.residual = report.initialResidual = relative();
     report.converged = report.residual <= options.tolerance;
     std::vector<double> moved;
@@ -185,7 +207,8 @@ AreaFitReport FitAreaLaplacian(Far::TopologyRefiner const& refiner, Multigrid& m
         std::vector<double> const step = fit.FindStep(positions, misfit);
         double share = 1.0;
         Misfit next = fit.TryMove(positions, step, share, moved);
-        while (!(next.squares < misfit.squares) && share > 1.0 / 64) next = fit.TryMove(positions, step, share *= 0.5, moved);
+        while (!(next.squares < misfit.squares) && share > 1.0 / 64)
+            next = fit.TryMove(positions, step, share *= 0.5, moved);
         ++report.steps;
         double const last = report.residual;
         if (next.squares < misfit.squares) {
@@ -194,7 +217,8 @@ AreaFitReport FitAreaLaplacian(Far::TopologyRefiner const& refiner, Multigrid& m
         }
         report.residual = relative();
         bool const isStill = share * FindLargest(step) < options.tolerance * FindExtent(positions);
-        report.converged = report.residual <= options.tolerance || isStill || report.residual > 0.99 * last;
+        report.converged =
+            report.residual <= options.tolerance || isStill || report.residual > 0.99 * last;
     }
     report.iterations = fit.GetNumIterations();
     return report;

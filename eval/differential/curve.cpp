@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/differential/curve.h"
 
 #include <cmath>
@@ -6,18 +7,23 @@ namespace limn::eval {
 
 namespace {
 
-double LengthOf(DoubleLanes const& row) { return std::sqrt(row.square().sum()); }
+double LengthOf(DoubleLanes const& row) {
+    return std::sqrt(row.square().sum());
+}
 
 /// A point by its place in the order; beyond an end, the reflection of what lies inside.
 DoubleLanes GetPoint(Curve const& curve, int i) {
     int const size = static_cast<int>(curve.points.size());
     if (curve.isClosed) return curve.points[static_cast<size_t>((i + size) % size)];
     if (i < 0) return 2.0 * curve.points.front() - curve.points[static_cast<size_t>(-i)];
-    if (i >= size) return 2.0 * curve.points.back() - curve.points[static_cast<size_t>(2 * size - 2 - i)];
+    if (i >= size)
+        return 2.0 * curve.points.back() - curve.points[static_cast<size_t>(2 * size - 2 - i)];
     return curve.points[static_cast<size_t>(i)];
 }
 
-bool IsEnd(Curve const& curve, int i) { return !curve.isClosed && (i == 0 || i + 1 == static_cast<int>(curve.points.size())); }
+bool IsEnd(Curve const& curve, int i) {
+    return !curve.isClosed && (i == 0 || i + 1 == static_cast<int>(curve.points.size()));
+}
 
 }  // namespace
 
@@ -25,7 +31,8 @@ Curve SubdivideCurve(Curve const& coarse, CurveRule rule) {
     Curve fine{{}, coarse.isClosed};
     int const size = static_cast<int>(coarse.points.size());
     for (int i = 0; i < size; ++i) {
-        DoubleLanes const before = GetPoint(coarse, i - 1), at = GetPoint(coarse, i), after = GetPoint(coarse, i + 1);
+        DoubleLanes const before = GetPoint(coarse, i - 1), at = GetPoint(coarse, i),
+                          after = GetPoint(coarse, i + 1);
         bool const stays = rule == CurveRule::FourPoint || IsEnd(coarse, i);
         fine.points.push_back(stays ? at : DoubleLanes(0.125 * before + 0.75 * at + 0.125 * after));
         if (i + 1 == size && !coarse.isClosed) break;
@@ -42,7 +49,8 @@ std::vector<DoubleLanes> FindCurveDeltas(Curve const& curve) {
     std::vector<DoubleLanes> deltas;
     int const size = static_cast<int>(curve.points.size());
     for (int i = 0; i < size; ++i) {
-        deltas.push_back(GetPoint(curve, i) - 0.5 * (GetPoint(curve, i - 1) + GetPoint(curve, i + 1)));
+        deltas.push_back(GetPoint(curve, i) -
+                         0.5 * (GetPoint(curve, i - 1) + GetPoint(curve, i + 1)));
     }
     if (!curve.isClosed && size > 2) {
         deltas.front() = deltas[1];
@@ -74,8 +82,8 @@ double SolveClosedCurve(std::vector<DoubleLanes> const& deltas, std::vector<Doub
     return lengths > 0.0 ? LengthOf(sum) / lengths : 0.0;
 }
 
-void SolveOpenCurve(std::vector<DoubleLanes> const& deltas, DoubleLanes const& first, DoubleLanes const& last,
-                    std::vector<DoubleLanes>& points) {
+void SolveOpenCurve(std::vector<DoubleLanes> const& deltas, DoubleLanes const& first,
+                    DoubleLanes const& last, std::vector<DoubleLanes>& points) {
     size_t const numEdges = deltas.size() - 1;
     DoubleLanes edge = DoubleLanes::Zero(), drift = DoubleLanes::Zero();
     for (size_t i = 1; i < numEdges; ++i) {
@@ -91,7 +99,8 @@ void SolveOpenCurve(std::vector<DoubleLanes> const& deltas, DoubleLanes const& f
     points.back() = last;
 }
 
-Curve RefineCurveDifferentially(Curve const& coarse, CurveRule rule, int levels, CurveReport* report) {
+Curve RefineCurveDifferentially(Curve const& coarse, CurveRule rule, int levels,
+                                CurveReport* report) {
     Curve spatial = coarse, deltas{FindCurveDeltas(coarse), coarse.isClosed};
     for (int level = 0; level < levels; ++level) {
         spatial = SubdivideCurve(spatial, rule);
@@ -104,7 +113,8 @@ Curve RefineCurveDifferentially(Curve const& coarse, CurveRule rule, int levels,
     if (coarse.isClosed) {
         found.compatibilityDefect = SolveClosedCurve(deltas.points, fine.points);
         for (DoubleLanes& point : fine.points) point += spatial.points.front();
-        for (DoubleLanes const& delta : deltas.points) mean += delta / static_cast<double>(deltas.points.size());
+        for (DoubleLanes const& delta : deltas.points)
+            mean += delta / static_cast<double>(deltas.points.size());
     } else {
         SolveOpenCurve(deltas.points, spatial.points.front(), spatial.points.back(), fine.points);
     }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/differential/dirmag.h"
 
 #include <cmath>
@@ -20,10 +21,12 @@ Vector Get(std::span<double const> values, Index i) {
 }
 
 void Set(std::vector<double>& values, Index i, Vector const& v) {
-    for (Index c = 0; c < 3; ++c) values[3 * static_cast<size_t>(i) + static_cast<size_t>(c)] = v[c];
+    for (Index c = 0; c < 3; ++c)
+        values[3 * static_cast<size_t>(i) + static_cast<size_t>(c)] = v[c];
 }
 
-/// The tangent at unit vector q along which the great circle to unit vector n runs, as long as the arc.
+/// The tangent at unit vector q along which the great circle to unit vector n runs, as long as the
+/// arc.
 Vector LogMap(Vector const& q, Vector const& n) {
     Vector const across = n - n.dot(q) * q;
     double const sine = across.norm();
@@ -32,11 +35,14 @@ Vector LogMap(Vector const& q, Vector const& n) {
 
 Vector ExpMap(Vector const& q, Vector const& tangent) {
     double const angle = tangent.norm();
-    return angle > 0.0 ? Vector(std::cos(angle) * q + std::sin(angle) / angle * tangent).normalized() : q;
+    return angle > 0.0
+               ? Vector(std::cos(angle) * q + std::sin(angle) / angle * tangent).normalized()
+               : q;
 }
 
 /// The weighted mean on the sphere of a row's directions.
-Vector FindSphericalMean(far_ext::SparseRows const& rows, int row, std::span<double const> directions) {
+Vector FindSphericalMean(far_ext::SparseRows const& rows, int row,
+                         std::span<double const> directions) {
     Vector mean = Vector::Zero();
     int largest = rows.offsets[row];
     for (int k = rows.offsets[row]; k < rows.offsets[row + 1]; ++k) {
@@ -58,17 +64,21 @@ Vector FindSphericalMean(far_ext::SparseRows const& rows, int row, std::span<dou
 
 }  // namespace
 
-std::vector<double> FindAngleNormals(Far::TopologyLevel const& level, std::span<double const> positions) {
+std::vector<double> FindAngleNormals(Far::TopologyLevel const& level,
+                                     std::span<double const> positions) {
     std::vector<double> normals(positions.size(), 0.0);
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         auto const vertices = level.GetFaceVertices(face);
         int const size = vertices.size();
         for (int i = 0; i < size; ++i) {
             Vector const p = Get(positions, vertices[i]);
-            Vector const a = Get(positions, vertices[(i + 1) % size]) - p, b = Get(positions, vertices[(i + size - 1) % size]) - p;
+            Vector const a = Get(positions, vertices[(i + 1) % size]) - p,
+                         b = Get(positions, vertices[(i + size - 1) % size]) - p;
             Vector const across = a.cross(b);
             double const sine = across.norm();
-            if (sine > 0.0) Set(normals, vertices[i], Get(normals, vertices[i]) + across * (std::atan2(sine, a.dot(b)) / sine));
+            if (sine > 0.0)
+                Set(normals, vertices[i],
+                    Get(normals, vertices[i]) + across * (std::atan2(sine, a.dot(b)) / sine));
         }
     }
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
@@ -78,7 +88,8 @@ std::vector<double> FindAngleNormals(Far::TopologyLevel const& level, std::span<
     return normals;
 }
 
-DirMag SplitDirMag(Far::TopologyLevel const& level, std::span<double const> positions, std::span<double const> deltas) {
+DirMag SplitDirMag(Far::TopologyLevel const& level, std::span<double const> positions,
+                   std::span<double const> deltas) {
     DirMag split{{}, FindAngleNormals(level, positions), 0.0};
     double tangential = 0.0, all = 0.0;
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
@@ -99,8 +110,9 @@ DirMag SubdivideDirMag(far_ext::SparseRows const& rows, DirMag const& coarse) {
     fine.magnitudes.resize(static_cast<size_t>(rows.GetNumRows()));
     fine.directions.resize(3 * fine.magnitudes.size());
     rows.Apply(coarse.magnitudes.data(), fine.magnitudes.data(), 1);
-    tbb::parallel_for(0, rows.GetNumRows(),
-                      [&](int row) { Set(fine.directions, row, FindSphericalMean(rows, row, coarse.directions)); });
+    tbb::parallel_for(0, rows.GetNumRows(), [&](int row) {
+        Set(fine.directions, row, FindSphericalMean(rows, row, coarse.directions));
+    });
     return fine;
 }
 

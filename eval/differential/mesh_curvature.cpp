@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/differential/mesh_curvature.h"
 
 #include <cmath>
@@ -14,10 +15,13 @@ namespace {
 using Level = Far::TopologyLevel;
 using Vector = Eigen::Vector3d;
 
-Vector Get(std::span<double const> values, Index i) { return Vector(values.data() + 3 * static_cast<size_t>(i)); }
+Vector Get(std::span<double const> values, Index i) {
+    return Vector(values.data() + 3 * static_cast<size_t>(i));
+}
 
 /// The angle by which faces turn across an edge; positive where it is convex.
-double FindDihedral(Level const& level, std::span<double const> positions, std::span<double const> normals, Index edge) {
+double FindDihedral(Level const& level, std::span<double const> positions,
+                    std::span<double const> normals, Index edge) {
     auto const faces = level.GetEdgeFaces(edge);
     Index const from = level.GetEdgeVertices(edge)[0], to = level.GetEdgeVertices(edge)[1];
     Vector const a = Get(normals, faces[0]), b = Get(normals, faces[1]);
@@ -25,7 +29,8 @@ double FindDihedral(Level const& level, std::span<double const> positions, std::
     auto const vertices = level.GetFaceVertices(faces[0]);
     int const corner = level.GetEdgeFaceLocalIndices(edge)[0];
     bool const isForward = vertices[corner] == from;
-    Vector const along = (Get(positions, to) - Get(positions, from)).normalized() * (isForward ? 1.0 : -1.0);
+    Vector const along =
+        (Get(positions, to) - Get(positions, from)).normalized() * (isForward ? 1.0 : -1.0);
     return std::atan2(a.cross(b).dot(along), a.dot(b));
 }
 
@@ -46,14 +51,16 @@ std::vector<double> FindFaceNormals(Level const& level, std::span<double const> 
         Vector const origin = Get(positions, vertices[0]);
         Vector sum = Vector::Zero();
         for (int i = 1; i + 1 < vertices.size(); ++i) {
-            sum += 0.5 * (Get(positions, vertices[i]) - origin).cross(Get(positions, vertices[i + 1]) - origin);
+            sum += 0.5 * (Get(positions, vertices[i]) - origin)
+                             .cross(Get(positions, vertices[i + 1]) - origin);
         }
         Vector::Map(&normals[3 * static_cast<size_t>(face)]) = sum;
     });
     return normals;
 }
 
-MeshCurvature MeasureMeshCurvature(Level const& level, std::span<double const> positions, double orientation) {
+MeshCurvature MeasureMeshCurvature(Level const& level, std::span<double const> positions,
+                                   double orientation) {
     auto const numVertices = static_cast<size_t>(level.GetNumVertices());
     std::vector<double> const normals = FindFaceNormals(level, positions);
     std::vector<double> bends(static_cast<size_t>(level.GetNumEdges()), 0.0);  // |e|/2 beta / |e|^2
@@ -61,9 +68,11 @@ MeshCurvature MeasureMeshCurvature(Level const& level, std::span<double const> p
         if (level.GetEdgeFaces(edge).size() != 2) return;
         auto const ends = level.GetEdgeVertices(edge);
         double const length = (Get(positions, ends[1]) - Get(positions, ends[0])).norm();
-        if (length > 0.0) bends[edge] = 0.5 * FindDihedral(level, positions, normals, edge) / length;
+        if (length > 0.0)
+            bends[edge] = 0.5 * FindDihedral(level, positions, normals, edge) / length;
     });
-    MeshCurvature curvature{std::vector<double>(numVertices, 0.0), std::vector<double>(numVertices, 0.0),
+    MeshCurvature curvature{std::vector<double>(numVertices, 0.0),
+                            std::vector<double>(numVertices, 0.0),
                             std::vector<double>(numVertices, 0.0)};
     tbb::parallel_for(0, level.GetNumVertices(), [&](Index vertex) {
         if (!HasCurvature(level, vertex)) return;
@@ -78,7 +87,8 @@ MeshCurvature MeasureMeshCurvature(Level const& level, std::span<double const> p
         Vector const u = normal.unitOrthogonal(), v = normal.cross(u);
         double uu = 0.0, uv = 0.0, vv = 0.0;
         for (Index edge : level.GetVertexEdges(vertex)) {
-            Vector const side = Get(positions, far_ext::GetOtherEnd(level, edge, vertex)) - Get(positions, vertex);
+            Vector const side =
+                Get(positions, far_ext::GetOtherEnd(level, edge, vertex)) - Get(positions, vertex);
             double const a = side.dot(u), b = side.dot(v), bend = orientation * bends[edge] / area;
             uu += bend * a * a;
             uv += bend * a * b;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <span>
@@ -11,22 +12,26 @@ namespace limn::eval {
 
 /// Curvature of a polygon mesh per vertex, in 1/length, by the tensor of its dihedral angles:
 ///     T = (1/A) sum over edges of |e|/2 beta e e^T, projected on the tangent plane,
-/// with A the vertex's share of its faces' areas. Where the mesh is a dense sampling of a smooth surface it is
-/// that surface's. Vertices on a boundary, at an edge of more than two faces or without a face have none.
+/// with A the vertex's share of its faces' areas. Where the mesh is a dense sampling of a smooth
+/// surface it is that surface's. Vertices on a boundary, at an edge of more than two faces or
+/// without a face have none.
 ///
 /// Source  [Zhu11] Sec. 4.3, its reference [39]
 struct MeshCurvature {
-    std::vector<double> areas;       ///< per vertex; 0 where it has no curvature
-    std::vector<double> k1, k2;      ///< k1 >= k2; positive where the mesh is convex seen from outside; 0 without
+    std::vector<double> areas;  ///< per vertex; 0 where it has no curvature
+    std::vector<double> k1,
+        k2;  ///< k1 >= k2; positive where the mesh is convex seen from outside; 0 without
     double GetMean(size_t vertex) const { return 0.5 * (k1[vertex] + k2[vertex]); }
     double GetGaussian(size_t vertex) const { return k1[vertex] * k2[vertex]; }
 };
 
 /// \param positions    3 per vertex of the level
 /// \param orientation  +1, or -1 to turn the outside round
-MeshCurvature MeasureMeshCurvature(Far::TopologyLevel const& level, std::span<double const> positions, double orientation);
+MeshCurvature MeasureMeshCurvature(Far::TopologyLevel const& level,
+                                   std::span<double const> positions, double orientation);
 
-/// Thin-plate energy: the area-weighted mean of k1^2 + k2^2 (1/length^2), and its integral, which has no scale.
+/// Thin-plate energy: the area-weighted mean of k1^2 + k2^2 (1/length^2), and its integral, which
+/// has no scale.
 struct ThinPlateEnergy {
     double mean = 0.0, integral = 0.0;
 };
@@ -34,6 +39,7 @@ struct ThinPlateEnergy {
 ThinPlateEnergy FindThinPlateEnergy(MeshCurvature const& curvature);
 
 /// Area vectors of faces: normals as long as the area.
-std::vector<double> FindFaceNormals(Far::TopologyLevel const& level, std::span<double const> positions);
+std::vector<double> FindFaceNormals(Far::TopologyLevel const& level,
+                                    std::span<double const> positions);
 
 }  // namespace limn::eval

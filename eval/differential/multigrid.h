@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -11,7 +12,8 @@ namespace limn::eval {
 /// What became of an iteration. Not converging is an answer: the caller decides.
 struct MultigridReport {
     int iterations = 0;
-    double residual = 0.0;  ///< |b - G x| / |b| of the solution handed back; where b = 0, over what it started from
+    double residual = 0.0;  ///< |b - G x| / |b| of the solution handed back; where b = 0, over what
+                            ///< it started from
     bool converged = false;
 };
 
@@ -26,22 +28,23 @@ struct EdgeWeights {
     std::vector<double> masses;  ///< per vertex, added to the diagonal; may be empty
 };
 
-/// Solves G x = b for three right-hand sides together on the last level of a uniform refinement, where
+/// Solves G x = b for three right-hand sides together on the last level of a uniform refinement,
+/// where
 ///     (G x)_i = m_i x_i + sum over edges (i,j) of w_ij (x_i - x_j),
-/// by conjugate gradients in double, preconditioned by a V-cycle in float on the refinement's own levels:
-/// Chebyshev smoothing, a sparse Cholesky factorisation on the coarsest. Without weights w = 1 and m = 0, and
-/// no level stores any.
+/// by conjugate gradients in double, preconditioned by a V-cycle in float on the refinement's own
+/// levels: Chebyshev smoothing, a sparse Cholesky factorisation on the coarsest. Without weights w
+/// = 1 and m = 0, and no level stores any.
 ///
-/// Singular  Where constants are free (MultigridLevel::Block), b is projected onto the range (b less its mean)
-///           and the solution keeps the mean it came with.
-/// Threads   Solve runs on the calling arena's threads, with the same bits whatever their number; one Solve
-///           at a time.
+/// Singular  Where constants are free (MultigridLevel::Block), b is projected onto the range (b
+///           less its mean) and the solution keeps the mean it came with.
+/// Threads   Solve runs on the calling arena's threads, with the same bits whatever their number;
+///           one Solve at a time.
 /// Memory    About 250 bytes per unknown on triangles.
 class Multigrid {
 public:
     /// \param refiner   uniformly refined, with the last level's full topology; not kept
-    /// \param coarsest  the level that is factorised. With the last one the solver is sparse Cholesky: the
-    ///                  reference, and fastest below some hundred unknowns
+    /// \param coarsest  the level that is factorised. With the last one the solver is sparse
+    ///                  Cholesky: the reference, and fastest below some hundred unknowns
     /// \throws Error    BadMesh: an equation of the coarsest level that no factorisation exists for
     Multigrid(Far::TopologyRefiner const& refiner, FixedVertices fixed, int coarsest = 0);
     ~Multigrid();
@@ -49,14 +52,15 @@ public:
 
     /// Replaces the weights, one entry per level from the coarsest; the numbering stays.
     ///
-    /// \throws Error  BadOption if sizes do not fit; BadMesh as the constructor, or for a row without a
-    ///                positive diagonal
+    /// \throws Error  BadOption if sizes do not fit; BadMesh as the constructor, or for a row
+    ///                without a positive diagonal
     void SetWeights(Far::TopologyRefiner const& refiner, std::vector<EdgeWeights> const& weights);
 
     /// \param rightSide  3 per vertex of the last level; entries of fixed vertices are not read
-    /// \param solution   3 per vertex: what to start from, and the result. Fixed vertices keep theirs, and
-    ///                   their neighbours see it
-    MultigridReport Solve(std::span<double const> rightSide, std::span<double> solution, MultigridOptions const& options = {});
+    /// \param solution   3 per vertex: what to start from, and the result. Fixed vertices keep
+    ///                   theirs, and their neighbours see it
+    MultigridReport Solve(std::span<double const> rightSide, std::span<double> solution,
+                          MultigridOptions const& options = {});
 
     std::vector<MultigridLevel> const& GetLevels() const;
 

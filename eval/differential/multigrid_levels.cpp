@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/differential/multigrid_levels.h"
 
 #include <algorithm>
@@ -16,7 +17,8 @@ bool IsFixed(Level const& level, Index vertex, FixedVertices fixed) {
 }
 
 /// Fills vertices, numUnknowns and blocks. \return the row of every vertex
-std::vector<Index> NumberBreadthFirst(Level const& level, FixedVertices fixed, MultigridLevel& graph) {
+std::vector<Index> NumberBreadthFirst(Level const& level, FixedVertices fixed,
+                                      MultigridLevel& graph) {
     constexpr Index kFixed = -2, kNew = -1;
     std::vector<Index> rows(static_cast<size_t>(level.GetNumVertices()), kNew);
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
@@ -54,12 +56,14 @@ void ListNeighbours(Level const& level, std::vector<Index> const& rows, Multigri
     size_t const numUnknowns = static_cast<size_t>(graph.numUnknowns);
     graph.offsets.assign(numUnknowns + 1, 0);
     for (size_t row = 0; row < numUnknowns; ++row) {
-        graph.offsets[row + 1] = graph.offsets[row] + level.GetVertexEdges(graph.vertices[row]).size();
+        graph.offsets[row + 1] =
+            graph.offsets[row] + level.GetVertexEdges(graph.vertices[row]).size();
     }
     graph.neighbours.resize(static_cast<size_t>(graph.offsets.back()));
     for (size_t row = 0, at = 0; row < numUnknowns; ++row) {
         Index const vertex = graph.vertices[row];
-        for (Index edge : level.GetVertexEdges(vertex)) graph.neighbours[at++] = rows[far_ext::GetOtherEnd(level, edge, vertex)];
+        for (Index edge : level.GetVertexEdges(vertex))
+            graph.neighbours[at++] = rows[far_ext::GetOtherEnd(level, edge, vertex)];
     }
 }
 
@@ -84,7 +88,8 @@ void LinkToFiner(Level const& level, std::vector<Index> const& rows, MultigridLe
 
 }  // namespace
 
-std::vector<MultigridLevel> BuildMultigridLevels(Far::TopologyRefiner const& refiner, FixedVertices fixed, int coarsest) {
+std::vector<MultigridLevel> BuildMultigridLevels(Far::TopologyRefiner const& refiner,
+                                                 FixedVertices fixed, int coarsest) {
     std::vector<MultigridLevel> graphs;
     std::vector<Index> rows, coarseRows;
     for (int k = coarsest; k <= refiner.GetMaxLevel(); ++k) {
@@ -92,7 +97,9 @@ std::vector<MultigridLevel> BuildMultigridLevels(Far::TopologyRefiner const& ref
         graphs.emplace_back();
         rows = NumberBreadthFirst(level, fixed, graphs.back());
         ListNeighbours(level, rows, graphs.back());
-        if (k > coarsest) LinkToFiner(refiner.GetLevel(k - 1), coarseRows, *(graphs.end() - 2), rows, graphs.back());
+        if (k > coarsest)
+            LinkToFiner(refiner.GetLevel(k - 1), coarseRows, *(graphs.end() - 2), rows,
+                        graphs.back());
         coarseRows.swap(rows);
     }
     return graphs;

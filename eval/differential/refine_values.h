@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -22,20 +23,23 @@ struct ValueRow {
     }
 };
 
-/// Values of level `level` - 1 of a uniform refinement to those of `level`, N doubles each: of vertices, or
-/// of a face-varying channel.
+/// Values of level `level` - 1 of a uniform refinement to those of `level`, N doubles each: of
+/// vertices, or of a face-varying channel.
 template <size_t N>
-std::vector<double> RefineValues(Far::TopologyRefiner const& refiner, int level, std::span<double const> coarse,
-                                 int fvarChannel = -1) {
+std::vector<double> RefineValues(Far::TopologyRefiner const& refiner, int level,
+                                 std::span<double const> coarse, int fvarChannel = -1) {
     static_assert(sizeof(ValueRow<N>) == N * sizeof(double));
     Far::PrimvarRefinerReal<double> const primvars(refiner);
     auto const topology = refiner.GetLevel(level);
     bool const isFVar = fvarChannel >= 0;
-    size_t const count = static_cast<size_t>(isFVar ? topology.GetNumFVarValues(fvarChannel) : topology.GetNumVertices());
+    size_t const count = static_cast<size_t>(isFVar ? topology.GetNumFVarValues(fvarChannel)
+                                                    : topology.GetNumVertices());
     std::vector<ValueRow<N>> from(coarse.size() / N), to(count);
     std::memcpy(from.data(), coarse.data(), coarse.size_bytes());
-    if (isFVar) primvars.InterpolateFaceVarying(level, from, to, fvarChannel);
-    else primvars.Interpolate(level, from, to);
+    if (isFVar)
+        primvars.InterpolateFaceVarying(level, from, to, fvarChannel);
+    else
+        primvars.Interpolate(level, from, to);
     std::vector<double> fine(count * N);
     std::memcpy(fine.data(), to.data(), fine.size() * sizeof(double));
     return fine;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "eval/differential/refine_values.h"
@@ -8,8 +9,8 @@ namespace limn::eval {
 
 /// Values of level `level` - 1 to those of `level` by a rule, N doubles per vertex.
 template <size_t N>
-std::vector<double> SubdivideValues(Far::TopologyRefiner const& refiner, int level, far_ext::SubdivisionRule rule,
-                                    std::span<double const> coarse) {
+std::vector<double> SubdivideValues(Far::TopologyRefiner const& refiner, int level,
+                                    far_ext::SubdivisionRule rule, std::span<double const> coarse) {
     if (rule == far_ext::SubdivisionRule::Scheme) return RefineValues<N>(refiner, level, coarse);
     far_ext::SparseRows const rows = far_ext::BuildButterfly(refiner, level);
     std::vector<double> fine(static_cast<size_t>(rows.GetNumRows()) * N);

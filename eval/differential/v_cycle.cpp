@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/differential/v_cycle.h"
 
 #include "far_ext/error.h"
@@ -6,8 +7,8 @@ namespace limn::eval {
 
 namespace {
 
-// Took the least time of 1 to 3 sweeps and shares of 3 to 6: 324 k irregular unknowns need 6 iterations, with one sweep 9
-// and 8 % more time, with three 6 and 20 % more.
+// Took the least time of 1 to 3 sweeps and shares of 3 to 6: 324 k irregular unknowns need 6
+// iterations, with one sweep 9 and 8 % more time, with three 6 and 20 % more.
 constexpr int kSweeps = 2;
 constexpr float kSmoothedShare = 4.0f;
 
@@ -16,12 +17,13 @@ constexpr float kSmoothedShare = 4.0f;
 VCycle::VCycle(std::vector<MultigridLevel> const& levels) : _levels(levels), _work(levels.size()) {
     for (size_t k = 0; k < levels.size(); ++k) {
         auto const numRows = static_cast<size_t>(levels[k].GetNumRows());
-        for (auto* rows : {&_work[k].rightSide, &_work[k].x, &_work[k].next}) rows->assign(numRows, FloatLanes::Zero());
+        for (auto* rows : {&_work[k].rightSide, &_work[k].x, &_work[k].next})
+            rows->assign(numRows, FloatLanes::Zero());
     }
 }
 
-void VCycle::SetWeights(std::vector<RowWeights<float>> weights, std::vector<float> largestEigenvalues,
-                        bool areConstantsFree) {
+void VCycle::SetWeights(std::vector<RowWeights<float>> weights,
+                        std::vector<float> largestEigenvalues, bool areConstantsFree) {
     _areConstantsFree = areConstantsFree;
     _weights = std::move(weights);
     _largestEigenvalues = std::move(largestEigenvalues);
@@ -43,11 +45,14 @@ void VCycle::FactoriseCoarsest() {
     std::vector<Eigen::Triplet<double>> entries;
     for (Index row = 0; row < level.numUnknowns; ++row) {
         if (_pins[row] < 0) continue;
-        entries.emplace_back(_pins[row], _pins[row], static_cast<double>(GetDiagonal(level, _weights.front(), row)));
+        entries.emplace_back(_pins[row], _pins[row],
+                             static_cast<double>(GetDiagonal(level, _weights.front(), row)));
         for (int k = level.offsets[row]; k < level.offsets[row + 1]; ++k) {
             Index const neighbour = level.neighbours[k];
             if (neighbour >= level.numUnknowns || _pins[neighbour] < 0) continue;
-            double const weight = _weights.front().entries.empty() ? 1.0 : static_cast<double>(_weights.front().entries[k]);
+            double const weight = _weights.front().entries.empty()
+                                      ? 1.0
+                                      : static_cast<double>(_weights.front().entries[k]);
             entries.emplace_back(_pins[row], _pins[neighbour], -weight);
         }
     }
@@ -55,7 +60,9 @@ void VCycle::FactoriseCoarsest() {
     matrix.setFromTriplets(entries.begin(), entries.end());
     _cholesky.compute(matrix);
     if (_cholesky.info() != Eigen::Success) {
-        throw Error(ErrorCode::BadMesh, "the coarsest level's equation cannot be factorised; its weights are not positive");
+        throw Error(
+            ErrorCode::BadMesh,
+            "the coarsest level's equation cannot be factorised; its weights are not positive");
     }
 }
 
@@ -74,18 +81,20 @@ void VCycle::SolveCoarsest() {
     subtractMean(work.rightSide);
     Eigen::Matrix<double, Eigen::Dynamic, 3> b(_cholesky.rows(), 3);
     for (Index row = 0; row < level.numUnknowns; ++row) {
-        if (_pins[row] >= 0) b.row(_pins[row]) = work.rightSide[row].head<3>().cast<double>().transpose();
+        if (_pins[row] >= 0)
+            b.row(_pins[row]) = work.rightSide[row].head<3>().cast<double>().transpose();
     }
     if (b.rows() > 0) b = _cholesky.solve(b).eval();
     for (Index row = 0; row < level.numUnknowns; ++row) {
         work.x[row].setZero();
-        if (_pins[row] >= 0) work.x[row].head<3>() = b.row(_pins[row]).transpose().array().cast<float>();
+        if (_pins[row] >= 0)
+            work.x[row].head<3>() = b.row(_pins[row]).transpose().array().cast<float>();
     }
     subtractMean(work.x);
 }
 
-/// Chebyshev iteration for the upper part of the spectrum: each sweep makes `next` from x, its residual and
-/// the iterate before, which `next` holds.
+/// Chebyshev iteration for the upper part of the spectrum: each sweep makes `next` from x, its
+/// residual and the iterate before, which `next` holds.
 void VCycle::Smooth(size_t k, bool startsAtZero) {
     MultigridLevel const& level = _levels[k];
     RowWeights<float> const& weights = _weights[k];
@@ -108,20 +117,23 @@ void VCycle::Smooth(size_t k, bool startsAtZero) {
             });
         } else if (sweep == 0) {
             ForEachRow(level.numUnknowns, [&](Index row) {
-                next[row] = x[row] + step / GetDiagonal(level, weights, row) * (b[row] - ApplyRow(level, weights, x, row));
+                next[row] = x[row] + step / GetDiagonal(level, weights, row) *
+                                         (b[row] - ApplyRow(level, weights, x, row));
             });
         } else {
             ForEachRow(level.numUnknowns, [&](Index row) {
                 next[row] = x[row] + momentum * (x[row] - next[row]) +
-                            step / GetDiagonal(level, weights, row) * (b[row] - ApplyRow(level, weights, x, row));
+                            step / GetDiagonal(level, weights, row) *
+                                (b[row] - ApplyRow(level, weights, x, row));
             });
         }
         work.x.swap(work.next);
     }
 }
 
-/// The transpose of Prolong, of level k's residual (in `next`), to the right-hand side of level k - 1. The
-/// neighbours of a vertex that was kept are the middles of its edges, and perhaps middles of faces are theirs.
+/// The transpose of Prolong, of level k's residual (in `next`), to the right-hand side of level k -
+/// 1. The neighbours of a vertex that was kept are the middles of its edges, and perhaps middles of
+/// faces are theirs.
 void VCycle::Restrict(size_t k) {
     MultigridLevel const &fine = _levels[k], &coarse = _levels[k - 1];
     FloatLanes const* const residual = _work[k].next.data();
@@ -136,7 +148,8 @@ void VCycle::Restrict(size_t k) {
             for (int j = fine.offsets[middle]; j < fine.offsets[middle + 1]; ++j) {
                 Index const face = fine.neighbours[j];
                 if (face >= fine.numUnknowns || fine.parents[face][0] >= 0) continue;
-                sum += residual[face] / static_cast<float>(fine.offsets[face + 1] - fine.offsets[face]);
+                sum += residual[face] /
+                       static_cast<float>(fine.offsets[face + 1] - fine.offsets[face]);
             }
         }
         _work[k - 1].rightSide[row] = residual[child] + 0.5f * sum;
@@ -169,8 +182,9 @@ void VCycle::Descend(size_t k) {
     MultigridLevel const& level = _levels[k];
     Work& work = _work[k];
     Smooth(k, true);
-    ForEachRow(level.numUnknowns,
-               [&](Index row) { work.next[row] = work.rightSide[row] - ApplyRow(level, _weights[k], work.x.data(), row); });
+    ForEachRow(level.numUnknowns, [&](Index row) {
+        work.next[row] = work.rightSide[row] - ApplyRow(level, _weights[k], work.x.data(), row);
+    });
     Restrict(k);
     Descend(k - 1);
     Prolong(k);
@@ -185,7 +199,8 @@ std::vector<FloatLanes> const& VCycle::Run() {
 size_t VCycle::GetNumBytes() const {
     size_t bytes = 0;
     for (auto const& work : _work) bytes += 3 * work.x.size() * sizeof(FloatLanes);
-    for (auto const& weights : _weights) bytes += (weights.entries.size() + weights.diagonals.size()) * sizeof(float);
+    for (auto const& weights : _weights)
+        bytes += (weights.entries.size() + weights.diagonals.size()) * sizeof(float);
     return bytes;
 }
 

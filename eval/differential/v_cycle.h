@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <vector>
@@ -19,7 +20,8 @@ struct RowWeights {
 
 /// Row i of G x.
 template <class Scalar, class Row>
-inline Row ApplyRow(MultigridLevel const& level, RowWeights<Scalar> const& weights, Row const* x, Index row) {
+inline Row ApplyRow(MultigridLevel const& level, RowWeights<Scalar> const& weights, Row const* x,
+                    Index row) {
     int const begin = level.offsets[row], end = level.offsets[row + 1];
     Index const* const neighbours = level.neighbours.data();
     Row sum = Row::Zero();
@@ -38,8 +40,11 @@ inline Row ApplyRow(MultigridLevel const& level, RowWeights<Scalar> const& weigh
 }
 
 template <class Scalar>
-inline Scalar GetDiagonal(MultigridLevel const& level, RowWeights<Scalar> const& weights, Index row) {
-    return weights.entries.empty() ? static_cast<Scalar>(level.offsets[row + 1] - level.offsets[row]) : weights.diagonals[row];
+inline Scalar GetDiagonal(MultigridLevel const& level, RowWeights<Scalar> const& weights,
+                          Index row) {
+    return weights.entries.empty()
+               ? static_cast<Scalar>(level.offsets[row + 1] - level.offsets[row])
+               : weights.diagonals[row];
 }
 
 /// An approximate inverse of a level's equation, the same symmetric map for every right-hand side.
@@ -48,13 +53,16 @@ public:
     /// \param levels  kept by reference
     explicit VCycle(std::vector<MultigridLevel> const& levels);
 
-    /// Takes over weights, one entry per level (empty ones for uniform weights), and factorises the coarsest.
+    /// Takes over weights, one entry per level (empty ones for uniform weights), and factorises the
+    /// coarsest.
     ///
     /// \param largestEigenvalues  per level: a bound of those of diag(G)^-1 G
     /// \param areConstantsFree    whether singular blocks are: false with masses
-    void SetWeights(std::vector<RowWeights<float>> weights, std::vector<float> largestEigenvalues, bool areConstantsFree);
+    void SetWeights(std::vector<RowWeights<float>> weights, std::vector<float> largestEigenvalues,
+                    bool areConstantsFree);
 
-    /// The finest level's right-hand side, to be filled; one entry per row, those of fixed vertices are zero.
+    /// The finest level's right-hand side, to be filled; one entry per row, those of fixed vertices
+    /// are zero.
     std::vector<FloatLanes>& GetRightSide() { return _work.back().rightSide; }
 
     /// Runs one cycle. \return per row of the finest level

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +21,11 @@ template <int Length>
 class ConjugateGradients {
 public:
     explicit ConjugateGradients(LimitProblem const& problem)
-        : _problem(problem), _count(problem.A.GetNumVertices()), _r(static_cast<size_t>(_count) * Length, 0.0), _p(_r), _q(_r) {}
+        : _problem(problem),
+          _count(problem.A.GetNumVertices()),
+          _r(static_cast<size_t>(_count) * Length, 0.0),
+          _p(_r),
+          _q(_r) {}
 
     IterationResult Run() {
         IterationResult result;
@@ -32,17 +37,21 @@ public:
             result.converged = result.residual <= _problem.tolerance;
         };
         record(Start());
-        while (!result.converged && !result.isStuck && result.applications < _problem.maxApplications) {
+        while (!result.converged && !result.isStuck &&
+               result.applications < _problem.maxApplications) {
             Sums<Length> const energy = Apply();
             Sums<Length> alpha{}, beta{};
             for (size_t i = 0; i < Length; ++i) {
-                if (_square[i] > 0.0 && !(energy[i] > 0.0)) result.isStuck = true;  // not positive definite
-                else if (_square[i] > 0.0) alpha[i] = _square[i] / energy[i];
+                if (_square[i] > 0.0 && !(energy[i] > 0.0))
+                    result.isStuck = true;  // not positive definite
+                else if (_square[i] > 0.0)
+                    alpha[i] = _square[i] / energy[i];
             }
             if (result.isStuck) break;
             Sums<Length> const before = _square;
             record(Advance(alpha));
-            for (size_t i = 0; i < Length; ++i) beta[i] = before[i] > 0.0 ? _square[i] / before[i] : 0.0;
+            for (size_t i = 0; i < Length; ++i)
+                beta[i] = before[i] > 0.0 ? _square[i] / before[i] : 0.0;
             Turn(beta);
             _alphas.push_back(alpha[0]);
             _betas.push_back(beta[0]);
@@ -60,12 +69,14 @@ private:
     /// r = M - A P, p = r, and <r, r>. Returns max |r|.
     double Start() {
         return Sum([&](Index begin, Index end, Partial& partial) {
-            _problem.A.ForEachRow<Row>(begin, end, Stage::Rest, _problem.solution, [&](Index row, auto const& c, Row const&, Row const& limit) {
-                Row const residual = Row::Load(_problem.data, row) - limit;
-                residual.Store(_r.data(), row);
-                residual.Store(_p.data(), row);
-                partial.Add(residual, c.scale);
-            });
+            _problem.A.ForEachRow<Row>(begin, end, Stage::Rest, _problem.solution,
+                                       [&](Index row, auto const& c, Row const&, Row const& limit) {
+                                           Row const residual =
+                                               Row::Load(_problem.data, row) - limit;
+                                           residual.Store(_r.data(), row);
+                                           residual.Store(_p.data(), row);
+                                           partial.Add(residual, c.scale);
+                                       });
         });
     }
 
@@ -73,10 +84,13 @@ private:
     Sums<Length> Apply() {
         auto const partials = MapChunks(_count, [&](Index begin, Index end) {
             Sums<Length> sum{};
-            _problem.A.ForEachRow<Row>(begin, end, Stage::Rest, _p.data(), [&](Index row, auto const& c, Row const& own, Row const& product) {
-                product.Store(_q.data(), row);
-                for (size_t i = 0; i < Length; ++i) sum[i] += c.scale * own.values[i] * product.values[i];
-            });
+            _problem.A.ForEachRow<Row>(
+                begin, end, Stage::Rest, _p.data(),
+                [&](Index row, auto const& c, Row const& own, Row const& product) {
+                    product.Store(_q.data(), row);
+                    for (size_t i = 0; i < Length; ++i)
+                        sum[i] += c.scale * own.values[i] * product.values[i];
+                });
             return sum;
         });
         Sums<Length> total{};
@@ -138,7 +152,9 @@ private:
     /// Of the first channel: the step lengths are the Lanczos matrix of A.
     double FindSmallestRitzValue() const {
         Eigen::Index size = 0;
-        while (size < static_cast<Eigen::Index>(_alphas.size()) && _alphas[static_cast<size_t>(size)] > 0.0) ++size;
+        while (size < static_cast<Eigen::Index>(_alphas.size()) &&
+               _alphas[static_cast<size_t>(size)] > 0.0)
+            ++size;
         if (size == 0) return 0.0;
         Eigen::VectorXd diagonal(size), beside(std::max<Eigen::Index>(size - 1, 0));
         for (Eigen::Index k = 0; k < size; ++k) {
@@ -162,7 +178,8 @@ private:
 
 IterationResult RunConjugateGradients(LimitProblem const& problem) {
     IterationResult result;
-    WithLength(problem.length, [&]<int Length>() { result = ConjugateGradients<Length>(problem).Run(); });
+    WithLength(problem.length,
+               [&]<int Length>() { result = ConjugateGradients<Length>(problem).Run(); });
     return result;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/fit/decompose.h"
 
 #include <algorithm>
@@ -28,7 +29,8 @@ void Denoise(LimitOperator const& A, int length, int detail, int steps, std::vec
     }
 }
 
-void Sharpen(LimitOperator const& A, int length, int first, int last, int steps, std::vector<double>& x) {
+void Sharpen(LimitOperator const& A, int length, int first, int last, int steps,
+             std::vector<double>& x) {
     std::vector<double> high;
     for (int step = 0; step < steps; ++step) {
         high = x;
@@ -38,17 +40,20 @@ void Sharpen(LimitOperator const& A, int length, int first, int last, int steps,
     }
 }
 
-void MorphStep(LimitOperator const& A, int length, int detail, double rate, std::span<double const> M, std::vector<double>& Q) {
+void MorphStep(LimitOperator const& A, int length, int detail, double rate,
+               std::span<double const> M, std::vector<double>& Q) {
     for (size_t k = 0; k < Q.size(); ++k) Q[k] -= M[k];
     Denoise(A, length, detail, 1, Q);
     for (size_t k = 0; k < Q.size(); ++k) Q[k] = M[k] + rate * Q[k];
 }
 
 void RequireFinite(std::span<double const> values, int length) {
-    auto const bad = std::find_if(values.begin(), values.end(), [](double x) { return !std::isfinite(x); });
+    auto const bad =
+        std::find_if(values.begin(), values.end(), [](double x) { return !std::isfinite(x); });
     if (bad == values.end()) return;
-    throw Error(ErrorCode::BadMesh, "vertex " + std::to_string((bad - values.begin()) / length) +
-                                        " has a value that is not a finite number; give it one or remove the vertex");
+    throw Error(ErrorCode::BadMesh,
+                "vertex " + std::to_string((bad - values.begin()) / length) +
+                    " has a value that is not a finite number; give it one or remove the vertex");
 }
 
 }  // namespace limn::eval

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <functional>
@@ -8,8 +9,8 @@
 
 namespace limn::eval {
 
-/// Frequency bands of a mesh: with E - A as the high-pass filter, M = sum over i < N of (E-A)^i A M, plus the
-/// remainder (E-A)^N M. All filters are applications of A; no matrix is kept.
+/// Frequency bands of a mesh: with E - A as the high-pass filter, M = sum over i < N of (E-A)^i A
+/// M, plus the remainder (E-A)^N M. All filters are applications of A; no matrix is kept.
 ///
 /// Values   rows of `length` numbers (1 to 4) per vertex, changed in place.
 /// Affine   all of these commute with translations, rotations and scaling.
@@ -25,11 +26,14 @@ void ApplyHighPass(LimitOperator const& A, int length, int power, std::vector<do
 /// x <- (E - (E-A)^(detail+1)) x, `steps` times: keeps the bands 0 to detail.
 void Denoise(LimitOperator const& A, int length, int detail, int steps, std::vector<double>& x);
 
-/// x <- x + sum over i = first to last of (E-A)^i x, `steps` times. \pre 0 < first <= last: the constant part stays
-void Sharpen(LimitOperator const& A, int length, int first, int last, int steps, std::vector<double>& x);
+/// x <- x + sum over i = first to last of (E-A)^i x, `steps` times. \pre 0 < first <= last: the
+/// constant part stays
+void Sharpen(LimitOperator const& A, int length, int first, int last, int steps,
+             std::vector<double>& x);
 
 /// Q <- M + rate (E - (E-A)^(detail+1)) (Q - M): one step of the way from Q to M.
-void MorphStep(LimitOperator const& A, int length, int detail, double rate, std::span<double const> M, std::vector<double>& Q);
+void MorphStep(LimitOperator const& A, int length, int detail, double rate,
+               std::span<double const> M, std::vector<double>& Q);
 
 /// \throws Error  BadMesh: a number that is not finite (vertex named)
 void RequireFinite(std::span<double const> values, int length);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
 #include <Eigen/SparseCholesky>
@@ -40,12 +41,14 @@ System MakeSystem(LimitProblem const& problem, Stage stage, std::vector<Index> c
         auto const at = [&](double const* values, Index vertex, int channel) {
             return values[static_cast<size_t>(vertex) * problem.length + channel];
         };
-        for (int c = 0; c < problem.length; ++c) system.right(i, c) = scale * at(problem.data, row, c);
+        for (int c = 0; c < problem.length; ++c)
+            system.right(i, c) = scale * at(problem.data, row, c);
         A.ForEachEntry(row, [&](Index column, double weight) {
             if (place[column] >= 0) {
                 entries.emplace_back(static_cast<int>(i), place[column], scale * weight);
             } else if (place[column] == -1) {
-                for (int c = 0; c < problem.length; ++c) system.right(i, c) -= scale * weight * at(problem.solution, column, c);
+                for (int c = 0; c < problem.length; ++c)
+                    system.right(i, c) -= scale * weight * at(problem.solution, column, c);
             }
         });
     }
@@ -61,15 +64,19 @@ bool SolveWith(Solver& solver, System const& system, LimitProblem const& problem
     if (solver.info() != Eigen::Success) return false;
     Rows const solution = solver.solve(system.right);
     for (Eigen::Index i = 0; i < solution.rows(); ++i) {
-        size_t const at = static_cast<size_t>(system.unknowns[static_cast<size_t>(i)]) * problem.length;
-        for (int c = 0; c < problem.length; ++c) problem.solution[at + static_cast<size_t>(c)] = solution(i, c);
+        size_t const at =
+            static_cast<size_t>(system.unknowns[static_cast<size_t>(i)]) * problem.length;
+        for (int c = 0; c < problem.length; ++c)
+            problem.solution[at + static_cast<size_t>(c)] = solution(i, c);
     }
     return true;
 }
 
 bool HasValence2(LimitOperator const& A) {
     for (Index row = 0; row < A.GetNumVertices(); ++row) {
-        if (A.GetClass(row).kind == far_ext::LimitRow::Kind::Smooth && A.GetClass(row).numEdges == 2) return true;
+        if (A.GetClass(row).kind == far_ext::LimitRow::Kind::Smooth &&
+            A.GetClass(row).numEdges == 2)
+            return true;
     }
     return false;
 }
@@ -89,7 +96,9 @@ void SolveCurves(LimitProblem const& problem) {
 }
 
 IterationResult SolveDirectly(LimitProblem const& problem, std::vector<Index> const& pinned) {
-    for (Index row : pinned) std::fill_n(problem.solution + static_cast<size_t>(row) * problem.length, problem.length, 0.0);
+    for (Index row : pinned)
+        std::fill_n(problem.solution + static_cast<size_t>(row) * problem.length, problem.length,
+                    0.0);
     System const system = MakeSystem(problem, Stage::Rest, pinned);
     bool isSolved = false;
     if (problem.A.IsSymmetric() && !HasValence2(problem.A)) {

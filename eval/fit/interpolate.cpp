@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/fit/interpolate.h"
 
 #include <algorithm>
@@ -11,29 +12,36 @@ namespace limn::eval {
 
 namespace {
 
-/// Where neither valences nor the caller give a bound. Valence-3 vertices among others hardly go below it, and
-/// Chebyshev lowers it where they do.
+/// Where neither valences nor the caller give a bound. Valence-3 vertices among others hardly go
+/// below it, and Chebyshev lowers it where they do.
 constexpr double kUsualLambda = 0.09;
 
-/// Below this conjugate gradients, which adapt to a few small eigenvalues, are faster than Chebyshev.
+/// Below this conjugate gradients, which adapt to a few small eigenvalues, are faster than
+/// Chebyshev.
 constexpr double kSmallLambda = 0.03;
 
 /// A bound from valences that is as good as the eigenvalue: 1/9 is that of regular quads.
 constexpr double kSharpBound = 0.11;
 
-/// Up to so many vertices the eigenvalue is estimated first; it takes milliseconds, and saves steps.
+/// Up to so many vertices the eigenvalue is estimated first; it takes milliseconds, and saves
+/// steps.
 constexpr Index kMaxEstimated = 50000;
 
 /// Up to so many unknowns a factorisation is tried where nothing else converges: 10 s, 0.3 GB.
 constexpr Index kMaxFactorised = 200000;
 
-void Validate(LimitOperator const& A, std::span<double const> M, int length, std::span<double> P, InterpolateOptions const& options) {
-    size_t const count = static_cast<size_t>(A.GetNumVertices()) * static_cast<size_t>(std::max(length, 0));
+void Validate(LimitOperator const& A, std::span<double const> M, int length, std::span<double> P,
+              InterpolateOptions const& options) {
+    size_t const count =
+        static_cast<size_t>(A.GetNumVertices()) * static_cast<size_t>(std::max(length, 0));
     if (length < 1 || M.size() != count || P.size() != count) {
-        throw Error(ErrorCode::BadOption, "interpolation: data and solution need `length` numbers per vertex");
+        throw Error(ErrorCode::BadOption,
+                    "interpolation: data and solution need `length` numbers per vertex");
     }
-    if (!(options.tolerance > 0.0)) throw Error(ErrorCode::BadOption, "interpolation: the tolerance must be above 0");
-    if (options.maxIterations < 1) throw Error(ErrorCode::BadOption, "interpolation: at least one iteration is needed");
+    if (!(options.tolerance > 0.0))
+        throw Error(ErrorCode::BadOption, "interpolation: the tolerance must be above 0");
+    if (options.maxIterations < 1)
+        throw Error(ErrorCode::BadOption, "interpolation: at least one iteration is needed");
     RequireFinite(M, length);
 }
 
@@ -49,7 +57,8 @@ std::vector<double> MakeNoise(size_t count) {
 }
 
 void Join(SolveReport& report, SolveReport const& block) {
-    bool const isWorst = report.method == SolveMethod::Automatic || block.residual > report.residual;
+    bool const isWorst =
+        report.method == SolveMethod::Automatic || block.residual > report.residual;
     if (isWorst) {
         report.method = block.method;
         report.residual = block.residual;
@@ -58,21 +67,27 @@ void Join(SolveReport& report, SolveReport const& block) {
     }
     report.iterations = std::max(report.iterations, block.iterations);
     report.converged &= block.converged;
-    if (report.lambdaMin == 0.0 || (block.lambdaMin > 0.0 && block.lambdaMin < report.lambdaMin)) report.lambdaMin = block.lambdaMin;
+    if (report.lambdaMin == 0.0 || (block.lambdaMin > 0.0 && block.lambdaMin < report.lambdaMin))
+        report.lambdaMin = block.lambdaMin;
     for (size_t i = 0; i < block.singularComponents.size(); ++i) {
-        if (report.singularComponents.size() <= i) report.singularComponents.push_back(block.singularComponents[i]);
+        if (report.singularComponents.size() <= i)
+            report.singularComponents.push_back(block.singularComponents[i]);
         auto& known = report.singularComponents[i];
         known.defect = std::max(known.defect, block.singularComponents[i].defect);
         known.isSolved &= block.singularComponents[i].isSolved;
     }
 }
 
-/// Channels `first` to `first` + count of rows of `length`, 1 to 4 of them: rows[i] = values[vertices[i]].
-void Gather(std::span<double const> values, int length, int first, int count, std::vector<Index> const& vertices, std::span<double> rows) {
+/// Channels `first` to `first` + count of rows of `length`, 1 to 4 of them: rows[i] =
+/// values[vertices[i]].
+void Gather(std::span<double const> values, int length, int first, int count,
+            std::vector<Index> const& vertices, std::span<double> rows) {
     WithLength(count, [&]<int Count>() {
         ForEachChunk(static_cast<Index>(vertices.size()), [&](Index begin, Index end) {
             for (Index row = begin; row < end; ++row) {
-                double const* const from = &values[static_cast<size_t>(vertices[row]) * static_cast<size_t>(length) + static_cast<size_t>(first)];
+                double const* const from =
+                    &values[static_cast<size_t>(vertices[row]) * static_cast<size_t>(length) +
+                            static_cast<size_t>(first)];
                 DoubleRow<Count>::Load(from, 0).Store(rows.data(), row);
             }
         });
@@ -80,11 +95,14 @@ void Gather(std::span<double const> values, int length, int first, int count, st
 }
 
 /// The reverse.
-void Scatter(std::span<double const> rows, int length, int first, int count, std::vector<Index> const& vertices, std::span<double> values) {
+void Scatter(std::span<double const> rows, int length, int first, int count,
+             std::vector<Index> const& vertices, std::span<double> values) {
     WithLength(count, [&]<int Count>() {
         ForEachChunk(static_cast<Index>(vertices.size()), [&](Index begin, Index end) {
             for (Index row = begin; row < end; ++row) {
-                double* const to = &values[static_cast<size_t>(vertices[row]) * static_cast<size_t>(length) + static_cast<size_t>(first)];
+                double* const to =
+                    &values[static_cast<size_t>(vertices[row]) * static_cast<size_t>(length) +
+                            static_cast<size_t>(first)];
                 DoubleRow<Count>::Load(rows.data(), row).Store(to, 0);
             }
         });
@@ -95,13 +113,15 @@ void Scatter(std::span<double const> rows, int length, int first, int count, std
 template <class Work>
 void ForEachBlockOfChannels(int length, Work const& work) {
     constexpr int kMaxBlock = 4;
-    for (int first = 0; first < length; first += kMaxBlock) work(first, std::min(kMaxBlock, length - first));
+    for (int first = 0; first < length; first += kMaxBlock)
+        work(first, std::min(kMaxBlock, length - first));
 }
 
 }  // namespace
 
 char const* GetName(SolveMethod method) {
-    constexpr char const* kNames[] = {"auto", "progressive", "weighted", "chebyshev", "cg", "direct"};
+    constexpr char const* kNames[] = {"auto",      "progressive", "weighted",
+                                      "chebyshev", "cg",          "direct"};
     return kNames[static_cast<int>(method)];
 }
 
@@ -120,13 +140,15 @@ double FindSize(std::span<double const> values, int length) {
     return square > 0.0 ? std::sqrt(square) : 1.0;
 }
 
-Interpolator::Interpolator(Far::TopologyRefiner const& refiner, int level, far_ext::LimitOptions const& options)
+Interpolator::Interpolator(Far::TopologyRefiner const& refiner, int level,
+                           far_ext::LimitOptions const& options)
     : _A(LimitOperator::Build(refiner, level, options).Reorder(_vertices)), _singular(_A) {}
 
 std::vector<double> Interpolator::FindLimits(std::span<double const> values, int length) const {
     std::vector<double> result(values.size());
     ForEachBlockOfChannels(length, [&](int first, int count) {
-        far_ext::LargeArray<double> rows(_vertices.size() * static_cast<size_t>(count)), limits(rows.size());
+        far_ext::LargeArray<double> rows(_vertices.size() * static_cast<size_t>(count)),
+            limits(rows.size());
         Gather(values, length, first, count, _vertices, rows);
         _A.Apply(rows, count, limits);
         Scatter(limits, length, first, count, _vertices, result);
@@ -134,17 +156,27 @@ std::vector<double> Interpolator::FindLimits(std::span<double const> values, int
     return result;
 }
 
-SolveReport Interpolator::Solve(std::span<double const> M, int length, std::span<double> P, InterpolateOptions const& options) const {
+SolveReport Interpolator::Solve(std::span<double const> M, int length, std::span<double> P,
+                                InterpolateOptions const& options) const {
     Validate(_A, M, length, P, options);
     SolveReport report;
     report.converged = true;
     double const size = FindSize(M, length);
     ForEachBlockOfChannels(length, [&](int first, int count) {
-        far_ext::LargeArray<double> data(_vertices.size() * static_cast<size_t>(count)), own(count < length ? data.size() : 0);
-        std::span<double> const solution = count < length ? std::span<double>(own) : P;  // P serves as memory until the end
+        far_ext::LargeArray<double> data(_vertices.size() * static_cast<size_t>(count)),
+            own(count < length ? data.size() : 0);
+        std::span<double> const solution =
+            count < length ? std::span<double>(own) : P;  // P serves as memory until the end
         Gather(M, length, first, count, _vertices, data);
         std::copy(data.begin(), data.end(), solution.begin());
-        LimitProblem problem{_A, count, data.data(), solution.data(), size, options.tolerance, options.maxIterations, options.onIteration};
+        LimitProblem problem{_A,
+                             count,
+                             data.data(),
+                             solution.data(),
+                             size,
+                             options.tolerance,
+                             options.maxIterations,
+                             options.onIteration};
         Join(report, SolveBlock(problem, options));
         std::copy(solution.begin(), solution.end(), data.begin());
         Scatter(data, length, first, count, _vertices, P);
@@ -162,7 +194,8 @@ Index Interpolator::FindFirstVertex(SingularComponents::Component const& compone
 double Interpolator::ChooseLambda(InterpolateOptions const& options) const {
     if (options.lambdaMin > 0.0) return options.lambdaMin;
     double const bound = _A.GetEigenvalueBound();
-    if (options.method == SolveMethod::Progressive || options.method == SolveMethod::ConjugateGradients ||
+    if (options.method == SolveMethod::Progressive ||
+        options.method == SolveMethod::ConjugateGradients ||
         options.method == SolveMethod::Direct || bound >= kSharpBound) {
         return std::max(bound, kSmallLambda);
     }
@@ -171,24 +204,33 @@ double Interpolator::ChooseLambda(InterpolateOptions const& options) const {
 }
 
 /// Chooses and runs methods; `used` receives the last one.
-IterationResult Interpolator::Run(LimitProblem const& problem, InterpolateOptions const& options, SolveMethod& used) const {
+IterationResult Interpolator::Run(LimitProblem const& problem, InterpolateOptions const& options,
+                                  SolveMethod& used) const {
     bool const isAutomatic = options.method == SolveMethod::Automatic;
     double const lambda = std::min(ChooseLambda(options), 0.9);
     std::vector<Index> pinned;
     for (auto const& component : _singular.Get()) pinned.push_back(component.vertices.front());
     used = isAutomatic ? SolveMethod::Chebyshev : options.method;
     switch (used) {
-        case SolveMethod::Progressive: return RunStationary(problem, StationaryMethod::Progressive, lambda);
-        case SolveMethod::Weighted: return RunStationary(problem, StationaryMethod::Weighted, lambda);
-        case SolveMethod::ConjugateGradients: return RunConjugateGradients(problem);
-        case SolveMethod::Direct: return SolveDirectly(problem, pinned);
-        default: break;
+        case SolveMethod::Progressive:
+            return RunStationary(problem, StationaryMethod::Progressive, lambda);
+        case SolveMethod::Weighted:
+            return RunStationary(problem, StationaryMethod::Weighted, lambda);
+        case SolveMethod::ConjugateGradients:
+            return RunConjugateGradients(problem);
+        case SolveMethod::Direct:
+            return SolveDirectly(problem, pinned);
+        default:
+            break;
     }
-    IterationResult result = RunStationary(problem, StationaryMethod::Chebyshev, lambda, isAutomatic ? kSmallLambda : 1e-6);
+    IterationResult result = RunStationary(problem, StationaryMethod::Chebyshev, lambda,
+                                           isAutomatic ? kSmallLambda : 1e-6);
     auto const goOn = [&](SolveMethod method, auto const& run) {
         used = method;
         // What diverged is no start.
-        if (!(result.residual < 1.0)) std::copy_n(problem.data, static_cast<size_t>(_A.GetNumVertices()) * problem.length, problem.solution);
+        if (!(result.residual < 1.0))
+            std::copy_n(problem.data, static_cast<size_t>(_A.GetNumVertices()) * problem.length,
+                        problem.solution);
         if (!(result.residual < 1.0)) SolveCurves(problem);
         IterationResult next = run();
         result.history.insert(result.history.end(), next.history.begin(), next.history.end());
@@ -202,18 +244,22 @@ IterationResult Interpolator::Run(LimitProblem const& problem, InterpolateOption
         goOn(SolveMethod::ConjugateGradients, [&] { return RunConjugateGradients(rest); });
     }
     bool const isSmallEnough = _A.GetNumRows(LimitOperator::Stage::Rest) <= kMaxFactorised;
-    if (isAutomatic && !result.converged && isSmallEnough) goOn(SolveMethod::Direct, [&] { return SolveDirectly(problem, pinned); });
+    if (isAutomatic && !result.converged && isSmallEnough)
+        goOn(SolveMethod::Direct, [&] { return SolveDirectly(problem, pinned); });
     return result;
 }
 
-SolveReport Interpolator::SolveBlock(LimitProblem& problem, InterpolateOptions const& options) const {
+SolveReport Interpolator::SolveBlock(LimitProblem& problem,
+                                     InterpolateOptions const& options) const {
     SolveReport report;
     std::vector<double> projected;
     double const* const data = problem.data;
     double worstDefect = 0.0;
     for (auto const& component : _singular.Get()) {
-        double const defect = SingularComponents::FindDefect(component, data, problem.length) / problem.size;
-        report.singularComponents.push_back({FindFirstVertex(component), static_cast<Index>(component.vertices.size()), defect,
+        double const defect =
+            SingularComponents::FindDefect(component, data, problem.length) / problem.size;
+        report.singularComponents.push_back({FindFirstVertex(component),
+                                             static_cast<Index>(component.vertices.size()), defect,
                                              defect <= 0.5 * problem.tolerance});
         worstDefect = std::max(worstDefect, defect);
     }
@@ -226,9 +272,11 @@ SolveReport Interpolator::SolveBlock(LimitProblem& problem, InterpolateOptions c
         if (worstDefect <= 0.5 * problem.tolerance) problem.tolerance -= worstDefect;
     }
     SolveCurves(problem);
-    report.method = options.method == SolveMethod::Automatic ? SolveMethod::Chebyshev : options.method;
+    report.method =
+        options.method == SolveMethod::Automatic ? SolveMethod::Chebyshev : options.method;
     IterationResult result;
-    if (_A.GetNumRows(LimitOperator::Stage::Rest) > 0) result = Run(problem, options, report.method);
+    if (_A.GetNumRows(LimitOperator::Stage::Rest) > 0)
+        result = Run(problem, options, report.method);
     _singular.Project(problem.solution, problem.length);
 
     problem.data = data;
@@ -236,7 +284,8 @@ SolveReport Interpolator::SolveBlock(LimitProblem& problem, InterpolateOptions c
     report.history = std::move(result.history);
     report.lambdaMin = result.lambdaMin;
     report.residual = result.residual;  // found in double by what converged
-    if (!result.converged || !projected.empty()) report.residual = FindResidual(problem, &report.worstVertex);
+    if (!result.converged || !projected.empty())
+        report.residual = FindResidual(problem, &report.worstVertex);
     report.converged = report.residual <= options.tolerance;
     return report;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <span>
@@ -9,8 +10,9 @@
 
 namespace limn::eval {
 
-/// Which way A P = M is solved. Automatic takes the fastest that converges: Chebyshev; where A's smallest
-/// eigenvalues make that slow, conjugate gradients; where A is not positive, a factorisation.
+/// Which way A P = M is solved. Automatic takes the fastest that converges: Chebyshev; where A's
+/// smallest eigenvalues make that slow, conjugate gradients; where A is not positive, a
+/// factorisation.
 enum class SolveMethod { Automatic, Progressive, Weighted, Chebyshev, ConjugateGradients, Direct };
 
 /// "progressive", "weighted", "chebyshev", "cg", "direct", "auto"
@@ -20,7 +22,8 @@ struct InterpolateOptions {
     SolveMethod method = SolveMethod::Automatic;
     double tolerance = 1e-6;   ///< of max |M - A P| over the diagonal of M's bounding box
     int maxIterations = 1000;  ///< applications of A
-    double lambdaMin = 0.0;    ///< a lower bound of A's eigenvalues if one is known; 0: limn finds its own
+    double lambdaMin =
+        0.0;  ///< a lower bound of A's eigenvalues if one is known; 0: limn finds its own
     OnIteration onIteration{};
 };
 
@@ -34,26 +37,30 @@ struct SingularReport {
 /// How a solve went. Not converging is an answer: the solution is then the best there is.
 struct SolveReport {
     SolveMethod method = SolveMethod::Automatic;  ///< the last one used
-    int iterations = 0;           ///< applications of A, all channels at once
-    double residual = 0.0;        ///< max |M - A P| over the diagonal, in double
-    Index worstVertex = -1;       ///< where that is, if the solve did not converge
-    std::vector<double> history;  ///< residual at each application
+    int iterations = 0;                           ///< applications of A, all channels at once
+    double residual = 0.0;                        ///< max |M - A P| over the diagonal, in double
+    Index worstVertex = -1;                       ///< where that is, if the solve did not converge
+    std::vector<double> history;                  ///< residual at each application
     bool converged = false;
-    double lambdaMin = 0.0;       ///< lower bound used or smallest eigenvalue found; 0: none was needed
+    double lambdaMin = 0.0;  ///< lower bound used or smallest eigenvalue found; 0: none was needed
     std::vector<SingularReport> singularComponents;
 };
 
 /// Finds control points P whose limit points are given: A P = M, for positions or any other values.
 ///
 /// Shape    M and P: one row of `length` numbers per vertex of the level.
-/// Open     boundaries and infinitely sharp creases are solved first, each curve by itself; the rest follows.
-/// Singular components get the solution of minimum norm where M lies within the tolerance of A's range.
-/// Threads  immutable; Solve may be called from several threads, and gives the same bits for any pool size.
+/// Open     boundaries and infinitely sharp creases are solved first, each curve by itself; the
+///          rest follows.
+/// Singular components get the solution of minimum norm where M lies within the tolerance of A's
+/// range.
+/// Threads  immutable; Solve may be called from several threads, and gives the same bits for any
+///          pool size.
 /// Source   [LaiCheng11] Sec. 4, eq. (5) and (7); surface.md 1.1 to 1.3.
 class Interpolator {
 public:
     /// \throws Error  as LimitOperator::Build
-    explicit Interpolator(Far::TopologyRefiner const& refiner, int level = 0, far_ext::LimitOptions const& options = {});
+    explicit Interpolator(Far::TopologyRefiner const& refiner, int level = 0,
+                          far_ext::LimitOptions const& options = {});
 
     /// A, its rows in the order of GetVertices.
     LimitOperator const& GetOperator() const { return _A; }
@@ -66,18 +73,21 @@ public:
 
     /// \param M       rows of `length` numbers, any length
     /// \param P       receives the solution; must not overlap M
-    /// \throws Error  BadMesh: a number of M that is not finite (vertex named).  BadOption: sizes or options
-    ///                that do not fit.  Also what onIteration throws
-    SolveReport Solve(std::span<double const> M, int length, std::span<double> P, InterpolateOptions const& options = {}) const;
+    /// \throws Error  BadMesh: a number of M that is not finite (vertex named).  BadOption: sizes
+    ///                or options that do not fit.  Also what onIteration throws
+    SolveReport Solve(std::span<double const> M, int length, std::span<double> P,
+                      InterpolateOptions const& options = {}) const;
 
-    /// Smallest eigenvalue of A (of its rest, see LimitOperator) from some steps of Lanczos' method: from above,
-    /// within a few percent, alternating modes of singular components aside. 1 where there is no rest.
+    /// Smallest eigenvalue of A (of its rest, see LimitOperator) from some steps of Lanczos'
+    /// method: from above, within a few percent, alternating modes of singular components aside. 1
+    /// where there is no rest.
     double EstimateSmallestEigenvalue(int steps = 40) const;
 
 private:
     double ChooseLambda(InterpolateOptions const& options) const;
     SolveReport SolveBlock(LimitProblem& problem, InterpolateOptions const& options) const;
-    IterationResult Run(LimitProblem const& problem, InterpolateOptions const& options, SolveMethod& used) const;
+    IterationResult Run(LimitProblem const& problem, InterpolateOptions const& options,
+                        SolveMethod& used) const;
 
     Index FindFirstVertex(SingularComponents::Component const& component) const;
 

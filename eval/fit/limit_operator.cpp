@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/fit/limit_operator.h"
 
 #include <algorithm>
@@ -18,8 +19,8 @@ std::span<Index const> LimitOperator::GetNeighbours(Index row) const {
 }
 
 size_t LimitOperator::GetNumBytes() const {
-    return _starts.capacity() * sizeof(int) + _classes.capacity() * sizeof(short) + _indices.capacity() * sizeof(Index) +
-           _weights.capacity() * sizeof(double);
+    return _starts.capacity() * sizeof(int) + _classes.capacity() * sizeof(short) +
+           _indices.capacity() * sizeof(Index) + _weights.capacity() * sizeof(double);
 }
 
 unsigned short LimitOperator::FindClass(RowClass const& wanted) {
@@ -28,7 +29,8 @@ unsigned short LimitOperator::FindClass(RowClass const& wanted) {
         if (_table[i] == wanted) return static_cast<unsigned short>(i);
     }
     if (_table.size() > std::numeric_limits<unsigned short>::max()) {
-        throw Error(ErrorCode::TooLarge, "the limit matrix has more than 65536 kinds of rows (valences and face sizes)");
+        throw Error(ErrorCode::TooLarge,
+                    "the limit matrix has more than 65536 kinds of rows (valences and face sizes)");
     }
     _table.push_back(wanted);
     return static_cast<unsigned short>(_table.size() - 1);
@@ -48,18 +50,20 @@ void LimitOperator::Append(LimitRow const& row) {
         _weights.insert(_weights.end(), row.weights.begin(), row.weights.end());
     } else {
         wanted.weights = {row.centre, row.edge, row.other};
-        for (size_t i = 0; i < 3; ++i) wanted.floatWeights[i] = static_cast<float>(wanted.weights[i]);
+        for (size_t i = 0; i < 3; ++i)
+            wanted.floatWeights[i] = static_cast<float>(wanted.weights[i]);
     }
     _indices.insert(_indices.end(), row.indices.begin(), row.indices.end());
-    if (std::max(_indices.size(), _weights.size()) > static_cast<size_t>(std::numeric_limits<int>::max())) {
+    if (std::max(_indices.size(), _weights.size()) >
+        static_cast<size_t>(std::numeric_limits<int>::max())) {
         throw Error(ErrorCode::TooLarge, "the limit matrix passes 2^31 entries");
     }
     _starts.push_back(static_cast<int>(_indices.size()));
     _classes.push_back(FindClass(wanted));
 }
 
-/// Curve rows form a stage of their own, less the curves that reach a vertex of the rest (a dart): there the
-/// curve hangs on the surface as the surface hangs on the curve.
+/// Curve rows form a stage of their own, less the curves that reach a vertex of the rest (a dart):
+/// there the curve hangs on the surface as the surface hangs on the curve.
 void LimitOperator::FindStages() {
     std::vector<Index> open;
     for (Index row = 0; row < GetNumVertices(); ++row) {
@@ -70,7 +74,9 @@ void LimitOperator::FindStages() {
         open.push_back(row);
     }
     auto const isRest = [&](Index row) { return GetClass(row).stage == Stage::Rest; };
-    std::erase_if(open, [&](Index row) { return std::none_of(GetNeighbours(row).begin(), GetNeighbours(row).end(), isRest); });
+    std::erase_if(open, [&](Index row) {
+        return std::none_of(GetNeighbours(row).begin(), GetNeighbours(row).end(), isRest);
+    });
     while (!open.empty()) {
         Index const row = open.back();
         open.pop_back();
@@ -84,10 +90,12 @@ void LimitOperator::FindStages() {
     }
 }
 
-/// Bounds of the smallest eigenvalue, from B = D A as a sum of squares over edges, faces and vertices: only the
-/// vertices' part counts, (n^2 - 3n + 2 n alpha) / D, for Loop (3/(8 beta) - n/2) / (3/(8 beta) + n).
+/// Bounds of the smallest eigenvalue, from B = D A as a sum of squares over edges, faces and
+/// vertices: only the vertices' part counts, (n^2 - 3n + 2 n alpha) / D, for Loop (3/(8 beta) -
+/// n/2) / (3/(8 beta) + n).
 void LimitOperator::Summarise(Sdc::SchemeType scheme, far_ext::LimitOptions const& options) {
-    for (Index row = 0; row < GetNumVertices(); ++row) ++_numRows[static_cast<int>(GetClass(row).stage)];
+    for (Index row = 0; row < GetNumVertices(); ++row)
+        ++_numRows[static_cast<int>(GetClass(row).stage)];
     std::vector<char> isUsed(_table.size(), 0);
     for (unsigned short c : _classes) isUsed[c] = 1;
     for (size_t i = 0; i < _table.size(); ++i) {
@@ -96,9 +104,12 @@ void LimitOperator::Summarise(Sdc::SchemeType scheme, far_ext::LimitOptions cons
         double const n = c.numEdges;
         double bound = 0.0;
         if (c.kind == LimitRow::Kind::Smooth) {
-            bool const isStationary = options.alphaRule == far_ext::LimitOptions::AlphaRule::Stationary;
-            if (scheme == Sdc::SCHEME_LOOP) bound = (c.scale - 1.5 * n) / c.scale;  // scale = n + 3/(8 beta)
-            else if (!isStationary || options.alpha == 0.0) bound = (n * n - 3.0 * n + 2.0 * n * options.alpha) / c.scale;
+            bool const isStationary =
+                options.alphaRule == far_ext::LimitOptions::AlphaRule::Stationary;
+            if (scheme == Sdc::SCHEME_LOOP)
+                bound = (c.scale - 1.5 * n) / c.scale;  // scale = n + 3/(8 beta)
+            else if (!isStationary || options.alpha == 0.0)
+                bound = (n * n - 3.0 * n + 2.0 * n * options.alpha) / c.scale;
         } else {
             _isSymmetric = false;
         }
@@ -106,7 +117,8 @@ void LimitOperator::Summarise(Sdc::SchemeType scheme, far_ext::LimitOptions cons
     }
 }
 
-LimitOperator LimitOperator::Build(Far::TopologyRefiner const& refiner, int level, far_ext::LimitOptions const& options) {
+LimitOperator LimitOperator::Build(Far::TopologyRefiner const& refiner, int level,
+                                   far_ext::LimitOptions const& options) {
     far_ext::LimitRowBuilder builder(refiner, level, options);
     auto const topology = refiner.GetLevel(level);
     LimitOperator result;
@@ -156,7 +168,8 @@ std::vector<Index> LimitOperator::OrderForSweeps() const {
 LimitOperator LimitOperator::Reorder(std::vector<Index>& vertices) const {
     vertices = OrderForSweeps();
     std::vector<Index> rows(vertices.size());
-    for (size_t row = 0; row < vertices.size(); ++row) rows[vertices[row]] = static_cast<Index>(row);
+    for (size_t row = 0; row < vertices.size(); ++row)
+        rows[vertices[row]] = static_cast<Index>(row);
     LimitOperator result;
     result._starts.reserve(_starts.size());
     result._classes.reserve(_classes.size());
@@ -184,7 +197,9 @@ void LimitOperator::Apply(std::span<double const> x, int length, std::span<doubl
         ForEachChunk(GetNumVertices(), [&](Index begin, Index end) {
             using Row = DoubleRow<Length>;
             ForEachRow<Row>(begin, end, Stage::Fixed, x.data(),
-                            [&](Index row, RowClass const&, Row const&, Row const& limit) { limit.Store(y.data(), row); });
+                            [&](Index row, RowClass const&, Row const&, Row const& limit) {
+                                limit.Store(y.data(), row);
+                            });
         });
     });
 }

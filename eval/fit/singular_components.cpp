@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/fit/singular_components.h"
 
 #include <cmath>
@@ -7,10 +8,12 @@ namespace limn::eval {
 namespace {
 
 /// The alternating part of one channel: sum of signs times values, per vertex.
-double FindAlternation(SingularComponents::Component const& component, double const* values, int length, int channel) {
+double FindAlternation(SingularComponents::Component const& component, double const* values,
+                       int length, int channel) {
     double sum = 0.0;
     for (size_t i = 0; i < component.vertices.size(); ++i) {
-        sum += component.signs[i] * values[static_cast<size_t>(component.vertices[i]) * length + channel];
+        sum += component.signs[i] *
+               values[static_cast<size_t>(component.vertices[i]) * length + channel];
     }
     return sum / static_cast<double>(component.vertices.size());
 }
@@ -23,7 +26,8 @@ SingularComponents::SingularComponents(LimitOperator const& A) {
         if (!A.GetClass(seed).isEvenCubic) continue;
         if (signs.empty()) signs.assign(static_cast<size_t>(A.GetNumVertices()), 0);
         if (signs[seed] != 0) continue;
-        // Through the whole patch of such vertices, also where it turns out not to be a component of its own.
+        // Through the whole patch of such vertices, also where it turns out not to be a component
+        // of its own.
         bool isSingular = true;
         Component component;
         component.vertices.push_back(seed);
@@ -46,7 +50,8 @@ SingularComponents::SingularComponents(LimitOperator const& A) {
     }
 }
 
-double SingularComponents::FindDefect(Component const& component, double const* values, int length) {
+double SingularComponents::FindDefect(Component const& component, double const* values,
+                                      int length) {
     double square = 0.0;
     for (int c = 0; c < length; ++c) {
         double const part = FindAlternation(component, values, length, c);
@@ -60,7 +65,8 @@ void SingularComponents::Project(double* values, int length) const {
         for (int c = 0; c < length; ++c) {
             double const part = FindAlternation(component, values, length, c);
             for (size_t i = 0; i < component.vertices.size(); ++i) {
-                values[static_cast<size_t>(component.vertices[i]) * length + c] -= component.signs[i] * part;
+                values[static_cast<size_t>(component.vertices[i]) * length + c] -=
+                    component.signs[i] * part;
             }
         }
     }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <vector>
@@ -6,9 +7,9 @@
 
 namespace limn::eval {
 
-/// The components on which A is singular: closed, all valences 3, all faces with an even number of sides, and
-/// bipartite, such as a cube or a hexagonal prism. There A maps the vector that is +1 and -1 in turn to zero,
-/// and data lie in the range of A where they are orthogonal to it.
+/// The components on which A is singular: closed, all valences 3, all faces with an even number of
+/// sides, and bipartite, such as a cube or a hexagonal prism. There A maps the vector that is +1
+/// and -1 in turn to zero, and data lie in the range of A where they are orthogonal to it.
 ///
 /// Source  surface.md 1.2; [LaiCheng11] Appendix B, which gives such meshes up.
 class SingularComponents {

@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "eval/parallel/step_pass.h"
 #include "eval/fit/step_schedule.h"
+#include "eval/parallel/step_pass.h"
 #include "far_ext/rows/large_array.h"
 
 namespace limn::eval {
@@ -32,37 +33,49 @@ struct Step {
     float a, b;
 };
 
-/// The inner iteration, in float: a correction E with A E = R, started at 0, in the unit of the data's size.
+/// The inner iteration, in float: a correction E with A E = R, started at 0, in the unit of the
+/// data's size.
 template <int Lanes>
 class Correction {
 public:
     explicit Correction(LimitOperator const& A)
-        : _A(A), _right(static_cast<size_t>(A.GetNumVertices()) * Row::kStride, 0.0f), _current(_right), _previous(_right) {}
+        : _A(A),
+          _right(static_cast<size_t>(A.GetNumVertices()) * Row::kStride, 0.0f),
+          _current(_right),
+          _previous(_right) {}
 
-    int GetStepsPerPass() const { return CountStepsPerPass(_A.GetNumVertices(), _A.GetBandwidth()); }
+    int GetStepsPerPass() const {
+        return CountStepsPerPass(_A.GetNumVertices(), _A.GetBandwidth());
+    }
 
     /// Steps in place, with max |R - A E| from before each of them.
     std::vector<float> Take(std::span<Step const> steps) {
         if (steps.size() == 1) return {TakeOne(steps[0])};
         Index const numRows = _A.GetNumVertices();
-        std::vector<std::vector<float>> maxima(steps.size(), std::vector<float>(static_cast<size_t>(numRows / kRowsPerBlock) + 1, 0.0f));
+        std::vector<std::vector<float>> maxima(
+            steps.size(),
+            std::vector<float>(static_cast<size_t>(numRows / kRowsPerBlock) + 1, 0.0f));
         float* const buffers[] = {_current.data(), _previous.data()};
-        RunStepsInOnePass(static_cast<Index>(steps.size()), numRows, _A.GetBandwidth(), [&](Index step, Index begin, Index end, size_t block) {
-            maxima[step][block] = TakeRows(steps[step], begin, end, buffers[step % 2], buffers[(step + 1) % 2]);
-        });
+        RunStepsInOnePass(static_cast<Index>(steps.size()), numRows, _A.GetBandwidth(),
+                          [&](Index step, Index begin, Index end, size_t block) {
+                              maxima[step][block] =
+                                  TakeRows(steps[step], begin, end, buffers[step % 2],
+                                           buffers[(step + 1) % 2]);
+                          });
         if (steps.size() % 2 == 1) std::swap(_current, _previous);
         std::vector<float> residuals;
         for (auto const& ofStep : maxima) residuals.push_back(std::sqrt(FindLargest(ofStep)));
         return residuals;
     }
 
-    /// Starts again at E = 0 for another right side, with the memory kept: what was E_k becomes 0, and E_{k-1} is
-    /// less by it. The step that follows needs no A.
+    /// Starts again at E = 0 for another right side, with the memory kept: what was E_k becomes 0,
+    /// and E_{k-1} is less by it. The step that follows needs no A.
     void Restart(double a, double b) {
         float const fa = static_cast<float>(a), fb = static_cast<float>(b);
         ForEachChunk(_A.GetNumVertices(), [&](Index begin, Index end) {
             for (Index row = begin; row < end; ++row) {
-                Row const before = Row::Load(_previous.data(), row) - Row::Load(_current.data(), row);
+                Row const before =
+                    Row::Load(_previous.data(), row) - Row::Load(_current.data(), row);
                 (fb * Row::Load(_right.data(), row) - fa * before).Store(_previous.data(), row);
                 Row().Store(_current.data(), row);
             }
@@ -78,33 +91,43 @@ private:
     using Row = FloatRow<Lanes>;
 
     float TakeOne(Step step) {
-        auto const maxima =
-            MapChunks(_A.GetNumVertices(), [&](Index begin, Index end) { return TakeRows(step, begin, end, _current.data(), _previous.data()); });
+        auto const maxima = MapChunks(_A.GetNumVertices(), [&](Index begin, Index end) {
+            return TakeRows(step, begin, end, _current.data(), _previous.data());
+        });
         std::swap(_current, _previous);
         return std::sqrt(FindLargest(maxima));
     }
 
-    /// Rows of a step from E_k to E_{k+1}, which takes the place of E_{k-1}. Returns max |R - A E_k|^2.
+    /// Rows of a step from E_k to E_{k+1}, which takes the place of E_{k-1}. Returns max |R - A
+    /// E_k|^2.
     float TakeRows(Step step, Index begin, Index end, float const* current, float* previous) const {
         float largest = 0.0f;
-        _A.ForEachRow<Row>(begin, end, Stage::Rest, current, [&](Index row, auto const&, Row const& own, Row const& limit) {
-            Row const residual = Row::Load(_right.data(), row) - limit;
-            largest = std::max(largest, residual.SquaredLength());
-            (own + step.a * (own - Row::Load(previous, row)) + step.b * residual).Store(previous, row);
-        });
+        _A.ForEachRow<Row>(begin, end, Stage::Rest, current,
+                           [&](Index row, auto const&, Row const& own, Row const& limit) {
+                               Row const residual = Row::Load(_right.data(), row) - limit;
+                               largest = std::max(largest, residual.SquaredLength());
+                               (own + step.a * (own - Row::Load(previous, row)) + step.b * residual)
+                                   .Store(previous, row);
+                           });
         return largest;
     }
 
     LimitOperator const& _A;
-    far_ext::LargeArray<float> _right, _current, _previous;  // of vertices that are not of the rest: 0
+    far_ext::LargeArray<float> _right, _current,
+        _previous;  // of vertices that are not of the rest: 0
 };
 
 /// The outer iteration, in double: R = M - A P, P += E until R is small enough.
 template <int Length>
 class StationarySolve {
 public:
-    StationarySolve(LimitProblem const& problem, StationaryMethod method, double lambda, double smallest)
-        : _problem(problem), _method(method), _schedule(method, lambda), _smallest(smallest), _correction(problem.A) {}
+    StationarySolve(LimitProblem const& problem, StationaryMethod method, double lambda,
+                    double smallest)
+        : _problem(problem),
+          _method(method),
+          _schedule(method, lambda),
+          _smallest(smallest),
+          _correction(problem.A) {}
 
     IterationResult Run() {
         double before = 1e30;
@@ -113,7 +136,8 @@ public:
             if (!IsUsedUp()) Record(residual);
             _result.residual = residual;
             _result.converged = residual <= _problem.tolerance;
-            // Not even half: rounding, divergence, or an eigenvalue that the inner steps cannot see.
+            // Not even half: rounding, divergence, or an eigenvalue that the inner steps cannot
+            // see.
             _result.isStuck |= !_result.converged && !(residual < 0.5 * before);
             if (_result.converged || _result.isStuck || IsUsedUp()) break;
             before = residual;
@@ -126,7 +150,8 @@ public:
 
 private:
     static constexpr int kLanes = Length == 1 ? 1 : 4;
-    /// So far inner steps go, as a share of the right side; rounding in float ends them at about a tenth of it.
+    /// So far inner steps go, as a share of the right side; rounding in float ends them at about a
+    /// tenth of it.
     static constexpr double kInnerGain = 1e-5;
 
     bool IsUsedUp() const { return _result.applications >= _problem.maxApplications; }
@@ -142,12 +167,16 @@ private:
         using Row = DoubleRow<Length>;
         auto const maxima = MapChunks(_problem.A.GetNumVertices(), [&](Index begin, Index end) {
             double largest = 0.0;
-            _problem.A.ForEachRow<Row>(begin, end, Stage::Rest, _problem.solution, [&](Index row, auto const&, Row const&, Row const& limit) {
-                Row const residual = Row::Load(_problem.data, row) - limit;
-                largest = Larger(residual.SquaredLength(), largest);
-                float* const right = _correction.GetRight() + static_cast<size_t>(row) * _correction.kStride;
-                for (size_t i = 0; i < Length; ++i) right[i] = static_cast<float>(residual.values[i] / _problem.size);
-            });
+            _problem.A.ForEachRow<Row>(
+                begin, end, Stage::Rest, _problem.solution,
+                [&](Index row, auto const&, Row const&, Row const& limit) {
+                    Row const residual = Row::Load(_problem.data, row) - limit;
+                    largest = Larger(residual.SquaredLength(), largest);
+                    float* const right =
+                        _correction.GetRight() + static_cast<size_t>(row) * _correction.kStride;
+                    for (size_t i = 0; i < Length; ++i)
+                        right[i] = static_cast<float>(residual.values[i] / _problem.size);
+                });
             return largest;
         });
         return std::sqrt(FindLargest(maxima)) / _problem.size;
@@ -180,19 +209,26 @@ private:
         }
     }
 
-    /// Steps to take together: as many as are needed anyway, if a step goes on to shrink the residual by `rate`.
+    /// Steps to take together: as many as are needed anyway, if a step goes on to shrink the
+    /// residual by `rate`.
     int CountSteps(double last, double goal, double rate) const {
-        int const most = std::min(_correction.GetStepsPerPass(), _problem.maxApplications - _result.applications);
-        double const needed = rate > 0.0 && rate < 1.0 ? std::log(goal / last) / std::log(rate) : 1.0;
+        int const most = std::min(_correction.GetStepsPerPass(),
+                                  _problem.maxApplications - _result.applications);
+        double const needed =
+            rate > 0.0 && rate < 1.0 ? std::log(goal / last) / std::log(rate) : 1.0;
         return needed > 1.0 ? std::min(most, static_cast<int>(std::min(needed, 100.0))) : 1;
     }
 
-    /// Lowers the bound where modes below it hold convergence up. Returns false where that goes too far.
+    /// Lowers the bound where modes below it hold convergence up. Returns false where that goes too
+    /// far.
     bool LowerBound() {
         double const rate = _watch.GetRate();
-        if (rate < std::sqrt(_schedule.GetExpectedRate())) return true;  // half as fast as hoped is still well
-        // The slowest mode's eigenvalue, and some room: an underestimate costs little, an overestimate much.
-        double const bound = std::min(0.8 * _schedule.FindEigenvalue(rate), 0.8 * _schedule.GetLambda());
+        if (rate < std::sqrt(_schedule.GetExpectedRate()))
+            return true;  // half as fast as hoped is still well
+        // The slowest mode's eigenvalue, and some room: an underestimate costs little, an
+        // overestimate much.
+        double const bound =
+            std::min(0.8 * _schedule.FindEigenvalue(rate), 0.8 * _schedule.GetLambda());
         _result.isStuck = !(bound > _smallest);
         if (_result.isStuck) return false;
         _schedule.Restart(bound);
@@ -203,9 +239,11 @@ private:
     void AddCorrection() {
         ForEachChunk(_problem.A.GetNumVertices(), [&](Index begin, Index end) {
             for (Index row = begin; row < end; ++row) {
-                float const* const e = _correction.Get() + static_cast<size_t>(row) * _correction.kStride;
+                float const* const e =
+                    _correction.Get() + static_cast<size_t>(row) * _correction.kStride;
                 double* const p = _problem.solution + static_cast<size_t>(row) * Length;
-                for (size_t i = 0; i < Length; ++i) p[i] += _problem.size * static_cast<double>(e[i]);
+                for (size_t i = 0; i < Length; ++i)
+                    p[i] += _problem.size * static_cast<double>(e[i]);
             }
         });
     }
@@ -221,9 +259,12 @@ private:
 
 }  // namespace
 
-IterationResult RunStationary(LimitProblem const& problem, StationaryMethod method, double lambda, double smallest) {
+IterationResult RunStationary(LimitProblem const& problem, StationaryMethod method, double lambda,
+                              double smallest) {
     IterationResult result;
-    WithLength(problem.length, [&]<int Length>() { result = StationarySolve<Length>(problem, method, lambda, smallest).Run(); });
+    WithLength(problem.length, [&]<int Length>() {
+        result = StationarySolve<Length>(problem, method, lambda, smallest).Run();
+    });
     return result;
 }
 
@@ -237,10 +278,12 @@ double FindResidual(LimitProblem const& problem, Index* worst) {
         auto const maxima = MapChunks(problem.A.GetNumVertices(), [&](Index begin, Index end) {
             Largest found;
             using Row = DoubleRow<Length>;
-            problem.A.ForEachRow<Row>(begin, end, Stage::Fixed, problem.solution, [&](Index row, auto const&, Row const&, Row const& limit) {
-                double const square = (Row::Load(problem.data, row) - limit).SquaredLength();
-                if (!(square <= found.square)) found = {square, row};
-            });
+            problem.A.ForEachRow<Row>(
+                begin, end, Stage::Fixed, problem.solution,
+                [&](Index row, auto const&, Row const&, Row const& limit) {
+                    double const square = (Row::Load(problem.data, row) - limit).SquaredLength();
+                    if (!(square <= found.square)) found = {square, row};
+                });
             return found;
         });
         for (Largest const& found : maxima) {

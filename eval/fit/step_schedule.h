@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -8,7 +9,8 @@
 
 namespace limn::eval {
 
-/// Coefficients a and b of the steps of a stationary iteration; Chebyshev's for eigenvalues in [lambda, 1].
+/// Coefficients a and b of the steps of a stationary iteration; Chebyshev's for eigenvalues in
+/// [lambda, 1].
 class StepSchedule {
 public:
     StepSchedule(StationaryMethod method, double lambda) : _method(method) { Restart(lambda); }
@@ -41,7 +43,8 @@ public:
     /// Chebyshev's factor per step, if the bound holds.
     double GetExpectedRate() const { return 1.0 / GetGrowth(_sigma); }
 
-    /// The eigenvalue whose mode shrinks by `rate` per step; the bound was too high if that is slow.
+    /// The eigenvalue whose mode shrinks by `rate` per step; the bound was too high if that is
+    /// slow.
     double FindEigenvalue(double rate) const {
         double const growth = rate * GetGrowth(_sigma);
         double const place = 0.5 * (growth + 1.0 / growth);
@@ -55,7 +58,8 @@ private:
     double _lambda = 0.0, _theta = 0.0, _sigma = 0.0, _rho = 0.0;
 };
 
-/// Watches Chebyshev's convergence: the mean factor per step over the last steps since the bound was set.
+/// Watches Chebyshev's convergence: the mean factor per step over the last steps since the bound
+/// was set.
 class RateWatch {
 public:
     static constexpr int kWindow = 6;

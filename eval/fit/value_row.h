@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -7,8 +8,8 @@
 
 namespace limn::eval {
 
-/// The values of one vertex, as the limit operator gathers and blends them: Length doubles that lie one after
-/// another.
+/// The values of one vertex, as the limit operator gathers and blends them: Length doubles that lie
+/// one after another.
 template <int Length>
 struct DoubleRow {
     using Scalar = double;
@@ -18,10 +19,13 @@ struct DoubleRow {
 
     static DoubleRow Load(double const* rows, Index vertex) {
         DoubleRow row;
-        std::memcpy(row.values.data(), rows + static_cast<size_t>(vertex) * kStride, sizeof row.values);
+        std::memcpy(row.values.data(), rows + static_cast<size_t>(vertex) * kStride,
+                    sizeof row.values);
         return row;
     }
-    void Store(double* rows, Index vertex) const { std::memcpy(rows + static_cast<size_t>(vertex) * kStride, values.data(), sizeof values); }
+    void Store(double* rows, Index vertex) const {
+        std::memcpy(rows + static_cast<size_t>(vertex) * kStride, values.data(), sizeof values);
+    }
 
     friend DoubleRow operator+(DoubleRow a, DoubleRow const& b) {
         for (size_t i = 0; i < Length; ++i) a.values[i] += b.values[i];
@@ -42,8 +46,8 @@ struct DoubleRow {
     }
 };
 
-/// The same in float, for the inner steps of iterations: one number, or four in a vector register (unused ones
-/// are 0). Both give the same bits on every CPU.
+/// The same in float, for the inner steps of iterations: one number, or four in a vector register
+/// (unused ones are 0). Both give the same bits on every CPU.
 template <int Lanes>
 struct FloatRow;
 
@@ -76,7 +80,9 @@ struct FloatRow<4> {
         std::memcpy(&row.values, rows + static_cast<size_t>(vertex) * kStride, sizeof row.values);
         return row;
     }
-    void Store(float* rows, Index vertex) const { std::memcpy(rows + static_cast<size_t>(vertex) * kStride, &values, sizeof values); }
+    void Store(float* rows, Index vertex) const {
+        std::memcpy(rows + static_cast<size_t>(vertex) * kStride, &values, sizeof values);
+    }
 
     friend FloatRow operator+(FloatRow a, FloatRow b) { return {a.values + b.values}; }
     friend FloatRow operator-(FloatRow a, FloatRow b) { return {a.values - b.values}; }

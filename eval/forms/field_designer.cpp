@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/forms/field_designer.h"
 
 #include <algorithm>
@@ -23,7 +24,8 @@ using Matrix = Eigen::SparseMatrix<double>;
 class FieldDesigner::Factorisation {
 public:
     /// \param isFixed  per unknown
-    Factorisation(std::vector<char> const& isFixed, std::vector<Eigen::Triplet<double>> const& entries) {
+    Factorisation(std::vector<char> const& isFixed,
+                  std::vector<Eigen::Triplet<double>> const& entries) {
         Index count = 0;
         for (char fixed : isFixed) _places.push_back(fixed ? -1 : count++);
         _right.resize(count);
@@ -31,15 +33,19 @@ public:
         std::vector<Eigen::Triplet<double>> kept;
         kept.reserve(entries.size());
         for (auto const& entry : entries) {
-            Index const row = _places[static_cast<size_t>(entry.row())], column = _places[static_cast<size_t>(entry.col())];
-            if (row >= 0 && column >= 0 && row >= column) kept.emplace_back(row, column, entry.value());
+            Index const row = _places[static_cast<size_t>(entry.row())],
+                        column = _places[static_cast<size_t>(entry.col())];
+            if (row >= 0 && column >= 0 && row >= column)
+                kept.emplace_back(row, column, entry.value());
         }
         Matrix matrix(count, count);
         matrix.setFromTriplets(kept.begin(), kept.end());
         _solver.compute(matrix);
         if (_solver.info() != Eigen::Success) {
-            throw Error(ErrorCode::BadMesh, "the equations of this mesh have no solution in double precision: its edges or angles "
-                                            "differ by too many orders of magnitude");
+            throw Error(ErrorCode::BadMesh,
+                        "the equations of this mesh have no solution in double precision: its "
+                        "edges or angles "
+                        "differ by too many orders of magnitude");
         }
     }
 
@@ -64,15 +70,20 @@ private:
 
 FieldDesigner::~FieldDesigner() = default;
 
-FieldDesigner::FieldDesigner(Far::TopologyLevel const& level, std::span<double const> positions, AtBoundary atBoundary)
-    : _level(level), _atBoundary(atBoundary), _components(far_ext::FaceComponents::Find(level)),
-      _stars(far_ext::FindHodgeStars(level, positions)), _d1(far_ext::BuildD1(level)) {
+FieldDesigner::FieldDesigner(Far::TopologyLevel const& level, std::span<double const> positions,
+                             AtBoundary atBoundary)
+    : _level(level),
+      _atBoundary(atBoundary),
+      _components(far_ext::FaceComponents::Find(level)),
+      _stars(far_ext::FindHodgeStars(level, positions)),
+      _d1(far_ext::BuildD1(level)) {
     _componentOfVertex.assign(static_cast<size_t>(level.GetNumVertices()), -1);
     _isOpen.assign(static_cast<size_t>(_components.count), 0);
     _isFixedVertex.assign(_componentOfVertex.size(), 0);
     _isEmptyEdge.assign(static_cast<size_t>(level.GetNumEdges()), 0);
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        for (Index vertex : level.GetFaceVertices(face)) _componentOfVertex[vertex] = _components.ofFace[face];
+        for (Index vertex : level.GetFaceVertices(face))
+            _componentOfVertex[vertex] = _components.ofFace[face];
     }
     for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
         if (level.GetEdgeFaces(edge).size() != 1) continue;
@@ -84,8 +95,9 @@ FieldDesigner::FieldDesigner(Far::TopologyLevel const& level, std::span<double c
 }
 
 /// \param freeBoundary  the kind of boundary at which strengths may leave
-std::vector<FieldDesigner::Imbalance> FieldDesigner::FindImbalance(std::span<double const> strengths, std::vector<int> const& componentOf,
-                                                                   AtBoundary freeBoundary) const {
+std::vector<FieldDesigner::Imbalance> FieldDesigner::FindImbalance(
+    std::span<double const> strengths, std::vector<int> const& componentOf,
+    AtBoundary freeBoundary) const {
     std::vector<double> sums(static_cast<size_t>(_components.count), 0.0), sizes(sums);
     for (size_t i = 0; i < strengths.size(); ++i) {
         if (componentOf[i] < 0) continue;
@@ -100,11 +112,13 @@ std::vector<FieldDesigner::Imbalance> FieldDesigner::FindImbalance(std::span<dou
     return found;
 }
 
-std::vector<FieldDesigner::Imbalance> FieldDesigner::FindSourceImbalance(std::span<double const> sources) const {
+std::vector<FieldDesigner::Imbalance> FieldDesigner::FindSourceImbalance(
+    std::span<double const> sources) const {
     return FindImbalance(sources, _componentOfVertex, AtBoundary::Normal);
 }
 
-std::vector<FieldDesigner::Imbalance> FieldDesigner::FindVortexImbalance(std::span<double const> vortices) const {
+std::vector<FieldDesigner::Imbalance> FieldDesigner::FindVortexImbalance(
+    std::span<double const> vortices) const {
     return FindImbalance(vortices, _components.ofFace, AtBoundary::Tangent);
 }
 
@@ -117,12 +131,14 @@ int FieldDesigner::CountHarmonics() const {
 
 std::vector<double> FieldDesigner::MakeGradient(std::span<double const> sources) {
     if (!_vertices) {
-        std::vector<char> isFixed = _isFixedVertex, isPinned(static_cast<size_t>(_components.count), 0);
+        std::vector<char> isFixed = _isFixedVertex,
+                          isPinned(static_cast<size_t>(_components.count), 0);
         for (size_t vertex = 0; vertex < isFixed.size(); ++vertex) {
             int const component = _componentOfVertex[vertex];
             if (component < 0) {
                 isFixed[vertex] = 1;
-            } else if (!(_isOpen[component] && _atBoundary == AtBoundary::Normal) && !isPinned[component]) {
+            } else if (!(_isOpen[component] && _atBoundary == AtBoundary::Normal) &&
+                       !isPinned[component]) {
                 isPinned[component] = isFixed[vertex] = 1;
             }
         }
@@ -130,7 +146,9 @@ std::vector<double> FieldDesigner::MakeGradient(std::span<double const> sources)
         for (Index edge = 0; edge < _level.GetNumEdges(); ++edge) {
             auto const ends = _level.GetEdgeVertices(edge);
             for (int a = 0; a < 2; ++a) {
-                for (int b = 0; b < 2; ++b) entries.emplace_back(ends[a], ends[b], a == b ? _stars.edge[edge] : -_stars.edge[edge]);
+                for (int b = 0; b < 2; ++b)
+                    entries.emplace_back(ends[a], ends[b],
+                                         a == b ? _stars.edge[edge] : -_stars.edge[edge]);
             }
         }
         _vertices = std::make_unique<Factorisation>(isFixed, entries);
@@ -148,10 +166,12 @@ std::vector<double> FieldDesigner::MakeGradient(std::span<double const> sources)
 
 std::vector<double> FieldDesigner::MakeVortex(std::span<double const> vortices) {
     if (!_faces) {
-        std::vector<char> isFixed(vortices.size(), 0), isPinned(static_cast<size_t>(_components.count), 0);
+        std::vector<char> isFixed(vortices.size(), 0),
+            isPinned(static_cast<size_t>(_components.count), 0);
         for (size_t face = 0; face < isFixed.size(); ++face) {
             int const component = _components.ofFace[face];
-            if ((_isOpen[component] && _atBoundary == AtBoundary::Tangent) || isPinned[component]) continue;
+            if ((_isOpen[component] && _atBoundary == AtBoundary::Tangent) || isPinned[component])
+                continue;
             isPinned[component] = isFixed[face] = 1;
         }
         std::vector<Eigen::Triplet<double>> entries;
@@ -166,13 +186,16 @@ std::vector<double> FieldDesigner::MakeVortex(std::span<double const> vortices) 
         }
         _faces = std::make_unique<Factorisation>(isFixed, entries);
     }
-    std::vector<double> form(static_cast<size_t>(_level.GetNumEdges()), 0.0), missing(vortices.begin(), vortices.end());
-    for (int step = 0; step < 2; ++step) {  // the second one gives back the digits that large values of psi took
+    std::vector<double> form(static_cast<size_t>(_level.GetNumEdges()), 0.0),
+        missing(vortices.begin(), vortices.end());
+    for (int step = 0; step < 2;
+         ++step) {  // the second one gives back the digits that large values of psi took
         std::vector<double> const psi = _faces->Solve(missing);
         for (Index face = 0; face < _level.GetNumFaces(); ++face) {
             for (int k = _d1.offsets[face]; k < _d1.offsets[face + 1]; ++k) {
                 Index const edge = _d1.indices[k];
-                if (!_isEmptyEdge[edge]) form[edge] += _d1.weights[k] * psi[face] / _stars.edge[edge];
+                if (!_isEmptyEdge[edge])
+                    form[edge] += _d1.weights[k] * psi[face] / _stars.edge[edge];
             }
         }
         if (step > 0) break;
@@ -196,11 +219,14 @@ std::vector<double> FieldDesigner::FindInflow(std::span<double const> form) cons
     return inflow;
 }
 
-std::vector<double> FieldDesigner::FindCurl(std::vector<double> const& form) const { return _d1.Apply(form); }
+std::vector<double> FieldDesigner::FindCurl(std::vector<double> const& form) const {
+    return _d1.Apply(form);
+}
 
 double FieldDesigner::FindNorm(std::span<double const> form) const {
     double sum = 0.0;
-    for (size_t edge = 0; edge < form.size(); ++edge) sum += _stars.edge[edge] * form[edge] * form[edge];
+    for (size_t edge = 0; edge < form.size(); ++edge)
+        sum += _stars.edge[edge] * form[edge] * form[edge];
     return std::sqrt(sum);
 }
 
@@ -225,7 +251,8 @@ HodgeParts FieldDesigner::Decompose(std::vector<double> const& form) {
     parts.gradient = FindGradientPart(form);
     parts.vortex = MakeVortex(FindCurl(form));
     parts.harmonic.assign(form.begin(), form.end());
-    for (size_t i = 0; i < form.size(); ++i) parts.harmonic[i] -= parts.gradient[i] + parts.vortex[i];
+    for (size_t i = 0; i < form.size(); ++i)
+        parts.harmonic[i] -= parts.gradient[i] + parts.vortex[i];
     return parts;
 }
 

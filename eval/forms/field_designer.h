@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -6,9 +7,9 @@
 
 #include <opensubdiv/far/topologyLevel.h>
 
-#include "far_ext/topology/face_components.h"
 #include "far_ext/forms/hodge_star.h"
 #include "far_ext/rows/sparse_rows.h"
+#include "far_ext/topology/face_components.h"
 
 namespace limn::eval {
 
@@ -20,15 +21,17 @@ struct HodgeParts {
     std::vector<double> gradient, vortex, harmonic;
 };
 
-/// Designs 1-forms on a mesh: sources and sinks at vertices, vortices at faces, harmonic fields round handles and holes; and
-/// takes given ones apart.
+/// Designs 1-forms on a mesh: sources and sinks at vertices, vortices at faces, harmonic fields
+/// round handles and holes; and takes given ones apart.
 ///
-///     gradient part  d0 f,            (d0^T *1 d0) f = -sources    (flow leaves a source of positive strength)
-///     vortex part    *1^-1 d1^T psi,  (d1 *1^-1 d1^T) psi = vortices    (counter-clockwise where positive)
-///     harmonic part  h with d1 h = 0, d0^T *1 h = 0
+///     gradient part  d0 f,            (d0^T *1 d0) f = -sources    (flow leaves a source of
+///     positive strength) vortex part    *1^-1 d1^T psi,  (d1 *1^-1 d1^T) psi = vortices
+///     (counter-clockwise where positive) harmonic part  h with d1 h = 0, d0^T *1 h = 0
 ///
-/// Boundary  Tangent: f is free there, psi is 0 outside.  Normal: f is 0 there, boundary edges carry nothing.
-/// Cost      each system is factorised once (nested dissection), when first needed; then a solve per change of strengths.
+/// Boundary  Tangent: f is free there, psi is 0 outside.  Normal: f is 0 there, boundary edges
+///           carry nothing.
+/// Cost      each system is factorised once (nested dissection), when first needed; then a solve
+///           per change of strengths.
 /// Threads   one at a time.
 /// Source    [Wang06] Sec. 3 and 5; forms.md 8.
 class FieldDesigner {
@@ -36,14 +39,18 @@ public:
     /// \param level      a base level that far_ext::CheckForms has passed; must outlive this
     /// \param positions  3 per vertex
     /// \throws Error     as far_ext::FindHodgeStars
-    FieldDesigner(Far::TopologyLevel const& level, std::span<double const> positions, AtBoundary atBoundary);
+    FieldDesigner(Far::TopologyLevel const& level, std::span<double const> positions,
+                  AtBoundary atBoundary);
     ~FieldDesigner();
 
     far_ext::HodgeStars const& GetStars() const { return _stars; }
     far_ext::FaceComponents const& GetComponents() const { return _components; }
-    std::vector<int> const& GetComponentOfVertex() const { return _componentOfVertex; }  ///< -1: no faces
+    std::vector<int> const& GetComponentOfVertex() const {
+        return _componentOfVertex;
+    }  ///< -1: no faces
 
-    /// Strengths that have nowhere to go: their sum over a component (1) on which nothing can leave.
+    /// Strengths that have nowhere to go: their sum over a component (1) on which nothing can
+    /// leave.
     struct Imbalance {
         int component;
         double sum;
@@ -51,16 +58,19 @@ public:
     std::vector<Imbalance> FindSourceImbalance(std::span<double const> sources) const;
     std::vector<Imbalance> FindVortexImbalance(std::span<double const> vortices) const;
 
-    /// \param sources  per vertex  \pre no imbalance beyond rounding, which the lowest vertex of a component takes
+    /// \param sources  per vertex  \pre no imbalance beyond rounding, which the lowest vertex of a
+    ///                 component takes
     std::vector<double> MakeGradient(std::span<double const> sources);
 
     /// \param vortices  per face  \pre as MakeGradient, for the lowest face
     std::vector<double> MakeVortex(std::span<double const> vortices);
 
-    /// How many harmonic forms there are: 2 g + max(b - 1, 0) per component of genus g with b boundary loops.
+    /// How many harmonic forms there are: 2 g + max(b - 1, 0) per component of genus g with b
+    /// boundary loops.
     int CountHarmonics() const;
 
-    /// A basis of them, each with period 1 round its generator; a solve for each when first asked for.
+    /// A basis of them, each with period 1 round its generator; a solve for each when first asked
+    /// for.
     std::vector<std::vector<double>> const& GetHarmonics();
 
     HodgeParts Decompose(std::vector<double> const& form);
@@ -68,14 +78,17 @@ public:
     /// Square root of sum *1 w^2: the field's root of energy.
     double FindNorm(std::span<double const> form) const;
 
-    /// d0^T *1 w per vertex (0 at boundary vertices under Normal): what flows in. d1 w per face: curl.
+    /// d0^T *1 w per vertex (0 at boundary vertices under Normal): what flows in. d1 w per face:
+    /// curl.
     std::vector<double> FindInflow(std::span<double const> form) const;
     std::vector<double> FindCurl(std::vector<double> const& form) const;
 
 private:
     class Factorisation;
 
-    std::vector<Imbalance> FindImbalance(std::span<double const> strengths, std::vector<int> const& componentOf, AtBoundary freeBoundary) const;
+    std::vector<Imbalance> FindImbalance(std::span<double const> strengths,
+                                         std::vector<int> const& componentOf,
+                                         AtBoundary freeBoundary) const;
     std::vector<double> FindGradientPart(std::span<double const> form);
 
     Far::TopologyLevel _level;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/forms/field_index.h"
 
 #include "far_ext/forms/form_operators.h"
@@ -11,10 +12,13 @@ FieldIndices FindFieldIndices(Far::TopologyLevel const& level, std::span<double 
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         for (int j = 0; j < level.GetFaceEdges(face).size(); ++j) {
             auto const side = far_ext::GetFaceSide(level, face, j);
-            if (form[side.edge] == 0.0 && level.GetEdgeFaces(side.edge).size() == 1) isPositive[side.edge] = side.sign > 0.0;
+            if (form[side.edge] == 0.0 && level.GetEdgeFaces(side.edge).size() == 1)
+                isPositive[side.edge] = side.sign > 0.0;
         }
     }
-    auto const isAlong = [&](far_ext::OrientedEdge side) { return (isPositive[side.edge] != 0) == (side.sign > 0.0); };
+    auto const isAlong = [&](far_ext::OrientedEdge side) {
+        return (isPositive[side.edge] != 0) == (side.sign > 0.0);
+    };
     auto const add = [&](bool isFace, Index element, double index) {
         if (index != 0.0) result.singularities.push_back({isFace, element, index});
         result.sum += index;
@@ -35,7 +39,8 @@ FieldIndices FindFieldIndices(Far::TopologyLevel const& level, std::span<double 
         int const size = level.GetFaceEdges(face).size();
         int changes = 0;
         for (int j = 0; j < size; ++j) {
-            changes += isAlong(far_ext::GetFaceSide(level, face, j)) != isAlong(far_ext::GetFaceSide(level, face, (j + 1) % size));
+            changes += isAlong(far_ext::GetFaceSide(level, face, j)) !=
+                       isAlong(far_ext::GetFaceSide(level, face, (j + 1) % size));
         }
         add(true, face, 1.0 - 0.5 * changes);
     }

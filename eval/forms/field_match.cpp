@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/forms/field_match.h"
 
 #include <cmath>
@@ -24,12 +25,15 @@ constexpr double kRest = 1e-12;       // of the field itself: decides where noth
 
 }  // namespace
 
-std::vector<double> MatchVectors(Far::TopologyLevel const& level, std::span<double const> positions, std::span<WantedVector const> wanted) {
+std::vector<double> MatchVectors(Far::TopologyLevel const& level, std::span<double const> positions,
+                                 std::span<WantedVector const> wanted) {
     far_ext::HodgeStars const stars = far_ext::FindHodgeStars(level, positions);
     Index const numEdges = level.GetNumEdges();
-    far_ext::SparseRows const faceVectorRows = far_ext::BuildFaceVectors(level, positions), curlRows = far_ext::BuildD1(level);
+    far_ext::SparseRows const faceVectorRows = far_ext::BuildFaceVectors(level, positions),
+                              curlRows = far_ext::BuildD1(level);
     Matrix const faceVectors = far_ext::AsMatrix(faceVectorRows, numEdges);
-    double const meanArea = std::accumulate(stars.area.begin(), stars.area.end(), 0.0) / static_cast<double>(stars.area.size());
+    double const meanArea = std::accumulate(stars.area.begin(), stars.area.end(), 0.0) /
+                            static_cast<double>(stars.area.size());
 
     // Three rows per wanted vector, over the faces' vectors.
     Triplets picks;
@@ -38,13 +42,17 @@ std::vector<double> MatchVectors(Far::TopologyLevel const& level, std::span<doub
         int const row = 3 * static_cast<int>(i);
         double area = 0.0;
         std::vector<Index> faces;
-        if (wanted[i].isFace) faces.push_back(wanted[i].element);
-        else for (Index face : level.GetVertexFaces(wanted[i].element)) faces.push_back(face);
+        if (wanted[i].isFace)
+            faces.push_back(wanted[i].element);
+        else
+            for (Index face : level.GetVertexFaces(wanted[i].element)) faces.push_back(face);
         for (Index face : faces) area += stars.area[face];
         double const weight = std::sqrt(wanted[i].isFace ? area : area / 3.0);
         for (int axis = 0; axis < 3; ++axis) {
-            for (Index face : faces) picks.emplace_back(row + axis, 3 * face + axis, weight * stars.area[face] / area);
-            right[row + axis] = faces.empty() ? 0.0 : weight * wanted[i].vector[static_cast<size_t>(axis)];
+            for (Index face : faces)
+                picks.emplace_back(row + axis, 3 * face + axis, weight * stars.area[face] / area);
+            right[row + axis] =
+                faces.empty() ? 0.0 : weight * wanted[i].vector[static_cast<size_t>(axis)];
         }
     }
     Matrix pick(right.size(), faceVectors.rows());
@@ -60,21 +68,28 @@ std::vector<double> MatchVectors(Far::TopologyLevel const& level, std::span<doub
     for (Index edge = 0; edge < numEdges; ++edge) {
         for (Index vertex : level.GetEdgeVertices(edge)) {
             if (dualAreas[vertex] == 0.0) continue;
-            divergences.emplace_back(vertex, edge, far_ext::GetSignFrom(level, edge, vertex) * stars.edge[edge] / std::sqrt(dualAreas[vertex]));
+            divergences.emplace_back(vertex, edge,
+                                     far_ext::GetSignFrom(level, edge, vertex) * stars.edge[edge] /
+                                         std::sqrt(dualAreas[vertex]));
         }
     }
     Matrix divergence(level.GetNumVertices(), numEdges);
     divergence.setFromTriplets(divergences.begin(), divergences.end());
     Matrix curl = far_ext::AsMatrix(curlRows, numEdges);
-    for (Index face = 0; face < level.GetNumFaces(); ++face) curl.row(face) /= std::sqrt(stars.area[face]);
+    for (Index face = 0; face < level.GetNumFaces(); ++face)
+        curl.row(face) /= std::sqrt(stars.area[face]);
 
     Eigen::SparseMatrix<double> system = Matrix(fit.transpose() * fit);
-    system += Eigen::SparseMatrix<double>(Matrix(kSmoothness * meanArea * (Matrix(divergence.transpose() * divergence) + Matrix(curl.transpose() * curl))));
+    system += Eigen::SparseMatrix<double>(
+        Matrix(kSmoothness * meanArea *
+               (Matrix(divergence.transpose() * divergence) + Matrix(curl.transpose() * curl))));
     Eigen::SparseMatrix<double> rest(numEdges, numEdges);
     rest.setIdentity();
-    for (Index edge = 0; edge < numEdges; ++edge) rest.coeffRef(edge, edge) = kRest * stars.edge[edge];
+    for (Index edge = 0; edge < numEdges; ++edge)
+        rest.coeffRef(edge, edge) = kRest * stars.edge[edge];
     system += rest;
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::MetisOrdering<int>> const solver(system);
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower,
+                          Eigen::MetisOrdering<int>> const solver(system);
     Eigen::VectorXd const form = solver.solve(fit.transpose() * right);
     return {form.data(), form.data() + form.size()};
 }

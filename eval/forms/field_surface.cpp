@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/forms/field_surface.h"
 
 #include <algorithm>
@@ -5,8 +6,8 @@
 #include <tbb/parallel_for.h>
 
 #include "eval/differential/refine_values.h"
-#include "eval/surface/surface_sample.h"
 #include "eval/forms/vertex_covectors.h"
+#include "eval/surface/surface_sample.h"
 #include "far_ext/error.h"
 #include "far_ext/forms/form_operators.h"
 #include "far_ext/forms/form_stencils.h"
@@ -15,11 +16,14 @@
 
 namespace limn::eval {
 
-FieldSurface::FieldSurface(far_ext::ControlMesh const& cage, std::span<double const> positions, std::span<double const> form, int levels)
+FieldSurface::FieldSurface(far_ext::ControlMesh const& cage, std::span<double const> positions,
+                           std::span<double const> form, int levels)
     : _positions(positions.begin(), positions.end()), _form(form.begin(), form.end()) {
     if (!far_ext::HasRefinedFaces(cage)) levels = std::max(levels, 1);
     double const corners = static_cast<double>(cage.faceVertices.size()) * std::pow(4.0, levels);
-    if (corners > 2e9) throw Error(ErrorCode::TooLarge, "the field's refined mesh would pass 2^31 indices; use a smaller texture");
+    if (corners > 2e9)
+        throw Error(ErrorCode::TooLarge,
+                    "the field's refined mesh would pass 2^31 indices; use a smaller texture");
 
     auto const base = far_ext::CreateRefiner(cage);
     far_ext::CheckForms(*base);
@@ -42,7 +46,8 @@ FieldSurface::FieldSurface(far_ext::ControlMesh const& cage, std::span<double co
     auto const from = base->GetLevel(levels), to = _refiner->GetLevel(0);
     std::vector<double> renumbered(_form.size());
     for (Index face = 0; face < to.GetNumFaces(); ++face) {
-        for (int j = 0; j < to.GetFaceEdges(face).size(); ++j) renumbered[to.GetFaceEdges(face)[j]] = _form[from.GetFaceEdges(face)[j]];
+        for (int j = 0; j < to.GetFaceEdges(face).size(); ++j)
+            renumbered[to.GetFaceEdges(face)[j]] = _form[from.GetFaceEdges(face)[j]];
     }
     _form = std::move(renumbered);
     _surface = std::make_unique<LimitSurface>(*_refiner);
@@ -56,23 +61,27 @@ void FieldSurface::FindVectors(Far::TopologyRefiner const& refiner) {
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         auto const corners = level.GetFaceVertices(face);
         bool const isRegular = std::all_of(corners.begin(), corners.end(), [&](Index vertex) {
-            return level.GetVertexFaces(vertex).size() == valence && far_ext::IsSmoothInterior(level, vertex);
+            return level.GetVertexFaces(vertex).size() == valence &&
+                   far_ext::IsSmoothInterior(level, vertex);
         });
         for (Index vertex : corners) isNeeded[vertex] |= !isRegular;
     }
     _vectors.assign(isNeeded.size(), Eigen::Vector3d::Zero());
     VertexCovectors const covectors(refiner, refiner.GetMaxLevel());
     tbb::parallel_for(Index(0), level.GetNumVertices(), [&](Index vertex) {
-        if (isNeeded[vertex]) _vectors[vertex] = covectors.Find(vertex, _form, _positions).GetVector();
+        if (isNeeded[vertex])
+            _vectors[vertex] = covectors.Find(vertex, _form, _positions).GetVector();
     });
 }
 
-FieldSurface::Sampler::Sampler(FieldSurface const& field) : _field(field), _tree(*field._surface, field._positions, 3) {}
+FieldSurface::Sampler::Sampler(FieldSurface const& field)
+    : _field(field), _tree(*field._surface, field._positions, 3) {}
 
 void FieldSurface::Sampler::Bind(Index face) {
     _tree.Bind(face);
     auto const level = _field._refiner->GetLevel(0);
-    _isRegular = _field._surface->IsLoop() ? _triangle.Bind(level, face, _field._form) : _quad.Bind(level, face, _field._form);
+    _isRegular = _field._surface->IsLoop() ? _triangle.Bind(level, face, _field._form)
+                                           : _quad.Bind(level, face, _field._form);
 }
 
 Eigen::Vector3d FieldSurface::Sampler::EvaluateHere(RefinedFaces::Place const& place) {
@@ -80,22 +89,27 @@ Eigen::Vector3d FieldSurface::Sampler::EvaluateHere(RefinedFaces::Place const& p
     auto const derivatives = EvaluateDerivatives(_tree, place.domain, s, t);
     if (!HasTangentPlane(derivatives)) return Eigen::Vector3d::Zero();
     if (_isRegular) {
-        auto const values = _field._surface->IsLoop() ? _triangle.Evaluate(s, t) : _quad.Evaluate(s, t);
+        auto const values =
+            _field._surface->IsLoop() ? _triangle.Evaluate(s, t) : _quad.Evaluate(s, t);
         return VertexCovector{{derivatives.ds, derivatives.dt}, values}.GetVector();
     }
     auto const corners = _field._refiner->GetLevel(0).GetFaceVertices(place.face);
     auto const& vectors = _field._vectors;
     Eigen::Vector3d blend;
     if (corners.size() == 3) {
-        blend = (1.0 - s - t) * vectors[corners[0]] + s * vectors[corners[1]] + t * vectors[corners[2]];
+        blend =
+            (1.0 - s - t) * vectors[corners[0]] + s * vectors[corners[1]] + t * vectors[corners[2]];
     } else {
-        blend = (1.0 - t) * ((1.0 - s) * vectors[corners[0]] + s * vectors[corners[1]]) + t * ((1.0 - s) * vectors[corners[3]] + s * vectors[corners[2]]);
+        blend = (1.0 - t) * ((1.0 - s) * vectors[corners[0]] + s * vectors[corners[1]]) +
+                t * ((1.0 - s) * vectors[corners[3]] + s * vectors[corners[2]]);
     }
     Eigen::Vector3d const normal = derivatives.ds.cross(derivatives.dt).normalized();
     return blend - normal * normal.dot(blend);
 }
 
-void FieldSurface::Sampler::Evaluate(Index face, int domain, std::span<double const> s, std::span<double const> t, std::span<Eigen::Vector3d> vectors) {
+void FieldSurface::Sampler::Evaluate(Index face, int domain, std::span<double const> s,
+                                     std::span<double const> t,
+                                     std::span<Eigen::Vector3d> vectors) {
     _field._faces->FindSorted(face, domain, s, t, _places);
     Index bound = -1;
     for (auto const& place : _places) {

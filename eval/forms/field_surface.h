@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -6,20 +7,20 @@
 
 #include <Eigen/Core>
 
-#include "eval/surface/limit_surface.h"
 #include "eval/forms/quad_form_patch.h"
-#include "eval/surface/refined_faces.h"
 #include "eval/forms/triangle_form_patch.h"
+#include "eval/surface/limit_surface.h"
+#include "eval/surface/refined_faces.h"
 #include "far_ext/topology/control_mesh.h"
 
 namespace limn::eval {
 
-/// The tangent vector field of a subdivided 1-form at any place of the limit surface: V = sum g^ab w(x_a) x_b with the
-/// limit's own tangents.
+/// The tangent vector field of a subdivided 1-form at any place of the limit surface: V = sum g^ab
+/// w(x_a) x_b with the limit's own tangents.
 ///
 /// Exact    in regular faces, by QuadFormPatch and TriangleFormPatch.
-/// Else     next to extraordinary vertices, boundaries and creases: the exact vectors at the refined face's corners,
-///          blended and projected on the tangent plane.
+/// Else     next to extraordinary vertices, boundaries and creases: the exact vectors at the
+///          refined face's corners, blended and projected on the tangent plane.
 /// Threads  immutable once built; a Sampler per thread.
 /// Source   [Wang06] Sec. 4 and 5; forms.md 4 (regular quads), 7
 class FieldSurface {
@@ -27,9 +28,11 @@ public:
     /// \param refiner    unrefined topology of the cage
     /// \param positions  3 per vertex of the cage
     /// \param form       per edge of the cage
-    /// \param levels     refinements; 1 is done at least where faces are not all quads (Loop: triangles)
+    /// \param levels     refinements; 1 is done at least where faces are not all quads (Loop:
+    ///                   triangles)
     /// \throws Error     as far_ext::CheckForms; TooLarge: 2^31 indices
-    FieldSurface(far_ext::ControlMesh const& cage, std::span<double const> positions, std::span<double const> form, int levels);
+    FieldSurface(far_ext::ControlMesh const& cage, std::span<double const> positions,
+                 std::span<double const> form, int levels);
 
     class Sampler {
     public:
@@ -37,7 +40,8 @@ public:
 
         /// \param face     of the cage, with a limit; \param domain as in LimitSurface
         /// \param vectors  one per place; 0 where the surface has no tangent plane
-        void Evaluate(Index face, int domain, std::span<double const> s, std::span<double const> t, std::span<Eigen::Vector3d> vectors);
+        void Evaluate(Index face, int domain, std::span<double const> s, std::span<double const> t,
+                      std::span<Eigen::Vector3d> vectors);
 
     private:
         void Bind(Index face);

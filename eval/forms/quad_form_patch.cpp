@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/forms/quad_form_patch.h"
 
 #include <algorithm>
@@ -24,26 +25,34 @@ void FindCubic(double x, double b[4]) {
 
 }  // namespace
 
-bool QuadFormPatch::Bind(Far::TopologyLevel const& level, Index face, std::span<double const> form) {
+bool QuadFormPatch::Bind(Far::TopologyLevel const& level, Index face,
+                         std::span<double const> form) {
     auto const corners = level.GetFaceVertices(face);
     for (Index vertex : corners) {
-        if (corners.size() != 4 || level.GetVertexFaces(vertex).size() != 4 || !far_ext::IsSmoothInterior(level, vertex)) return false;
+        if (corners.size() != 4 || level.GetVertexFaces(vertex).size() != 4 ||
+            !far_ext::IsSmoothInterior(level, vertex))
+            return false;
     }
-    constexpr int kColumn[4] = {1, 2, 2, 1}, kRow[4] = {1, 1, 2, 2};       // of the corners
-    constexpr int kAcross[4] = {1, 0, -1, 0}, kUp[4] = {0, 1, 0, -1};      // of a side that turns left at each corner
+    constexpr int kColumn[4] = {1, 2, 2, 1}, kRow[4] = {1, 1, 2, 2};  // of the corners
+    constexpr int kAcross[4] = {1, 0, -1, 0},
+                  kUp[4] = {0, 1, 0, -1};  // of a side that turns left at each corner
     for (int c = 0; c < 4; ++c) {
         auto const faces = level.GetVertexFaces(corners[c]);
         auto const places = level.GetVertexFaceLocalIndices(corners[c]);
         int first = 0;
         while (faces[first] != face) ++first;
-        for (int j = 0; j < 4; ++j) {  // the quads round the corner, whose sides 0, 1 and 2 turn left twice
+        for (int j = 0; j < 4;
+             ++j) {  // the quads round the corner, whose sides 0, 1 and 2 turn left twice
             int column = kColumn[c], row = kRow[c];
             for (int m = 0; m < 3; ++m) {
                 int const turn = (c + j + m) % 4, dx = kAcross[turn], dy = kUp[turn];
-                auto const side = far_ext::GetFaceSide(level, faces[(first + j) % 4], (places[(first + j) % 4] + m) % 4);
+                auto const side = far_ext::GetFaceSide(level, faces[(first + j) % 4],
+                                                       (places[(first + j) % 4] + m) % 4);
                 double const value = side.sign * form[side.edge];
-                if (dx != 0) _alongS[std::min(column, column + dx)][row] = dx * value;
-                else _alongT[column][std::min(row, row + dy)] = dy * value;
+                if (dx != 0)
+                    _alongS[std::min(column, column + dx)][row] = dx * value;
+                else
+                    _alongT[column][std::min(row, row + dy)] = dy * value;
                 column += dx;
                 row += dy;
             }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -9,8 +10,9 @@
 
 namespace limn::eval {
 
-/// The limit of a 1-form in a quad among regular ones (Catmull-Clark, all four corners of valence 4): quadratic B-splines
-/// along the edges times cubic ones across, over the 24 edges of the 3 x 3 quads round it.
+/// The limit of a 1-form in a quad among regular ones (Catmull-Clark, all four corners of valence
+/// 4): quadratic B-splines along the edges times cubic ones across, over the 24 edges of the 3 x 3
+/// quads round it.
 ///
 /// Source  forms.md 4 (regular quads: the tensor product of which this is the limit)
 class QuadFormPatch {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/forms/tree_cotree.h"
 
 #include <numeric>
@@ -11,7 +12,9 @@ namespace {
 /// Disjoint sets, to grow a spanning tree.
 class Sets {
 public:
-    explicit Sets(Index count) : _parents(static_cast<size_t>(count)) { std::iota(_parents.begin(), _parents.end(), 0); }
+    explicit Sets(Index count) : _parents(static_cast<size_t>(count)) {
+        std::iota(_parents.begin(), _parents.end(), 0);
+    }
 
     Index Find(Index i) {
         while (_parents[i] != i) i = _parents[i] = _parents[_parents[i]];
@@ -87,7 +90,8 @@ std::vector<std::vector<double>> FindClosedForms(Far::TopologyLevel const& level
     if (isRelative) {  // the loops of a component are one point
         std::vector<Index> first(static_cast<size_t>(level.GetNumVertices()), -1);
         Sets components(level.GetNumVertices());
-        for (Index edge = 0; edge < level.GetNumEdges(); ++edge) components.Join(level.GetEdgeVertices(edge)[0], level.GetEdgeVertices(edge)[1]);
+        for (Index edge = 0; edge < level.GetNumEdges(); ++edge)
+            components.Join(level.GetEdgeVertices(edge)[0], level.GetEdgeVertices(edge)[1]);
         for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
             if (!isBoundary(edge)) continue;
             Index const vertex = level.GetEdgeVertices(edge)[0];
@@ -98,7 +102,8 @@ std::vector<std::vector<double>> FindClosedForms(Far::TopologyLevel const& level
     }
     for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
         if (level.GetEdgeFaces(edge).size() == 0 || roles[edge] != Role::None) continue;
-        if (sets.Join(level.GetEdgeVertices(edge)[0], level.GetEdgeVertices(edge)[1])) roles[edge] = Role::Tree;
+        if (sets.Join(level.GetEdgeVertices(edge)[0], level.GetEdgeVertices(edge)[1]))
+            roles[edge] = Role::Tree;
     }
     DualTree const dual = GrowDualTree(level, roles, isRelative);
 
@@ -107,15 +112,18 @@ std::vector<std::vector<double>> FindClosedForms(Far::TopologyLevel const& level
         if (roles[generator] != Role::None || level.GetEdgeFaces(generator).size() == 0) continue;
         std::vector<double> form(roles.size(), 0.0);
         form[generator] = 1.0;
-        // From the leaves: a face's sides but the one to its parent are known, and with it add up to 0.
+        // From the leaves: a face's sides but the one to its parent are known, and with it add up
+        // to 0.
         for (auto face = dual.order.rbegin(); face != dual.order.rend(); ++face) {
             Index const open = dual.parentEdge[*face];
             if (open < 0) continue;
             double sum = 0.0, sign = 1.0;
             for (int j = 0; j < level.GetFaceEdges(*face).size(); ++j) {
                 auto const side = far_ext::GetFaceSide(level, *face, j);
-                if (side.edge == open) sign = side.sign;
-                else sum += side.sign * form[side.edge];
+                if (side.edge == open)
+                    sign = side.sign;
+                else
+                    sum += side.sign * form[side.edge];
             }
             form[open] = -sign * sum;
         }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/forms/triangle_form_patch.h"
 
 #include <algorithm>
@@ -6,9 +7,9 @@
 
 #include "eval/differential/refine_values.h"
 #include "eval/forms/vertex_covectors.h"
-#include "far_ext/topology/control_mesh.h"
 #include "far_ext/forms/form_operators.h"
 #include "far_ext/forms/form_stencils.h"
+#include "far_ext/topology/control_mesh.h"
 #include "far_ext/topology/refiner.h"
 
 namespace limn::eval {
@@ -17,7 +18,8 @@ namespace {
 
 using Terms = TriangleFormPatch::Terms;
 constexpr size_t kNumTerms = TriangleFormPatch::kNumTerms;
-constexpr size_t kNumPlaces = 36;  // of edges: 6 spokes and 6 ring edges per corner, some of them twice
+constexpr size_t kNumPlaces =
+    36;  // of edges: 6 spokes and 6 ring edges per corner, some of them twice
 
 /// Monomials of degree 0 to 4 about the triangle's middle.
 Terms MakeTerms(double s, double t) {
@@ -34,8 +36,10 @@ Terms MakeTerms(double s, double t) {
     return terms;
 }
 
-/// The edges round a triangle: per corner its spokes outwards and its ring, counter-clockwise from the triangle's side on.
-bool GatherEdges(Far::TopologyLevel const& level, Index face, std::array<far_ext::OrientedEdge, kNumPlaces>& places) {
+/// The edges round a triangle: per corner its spokes outwards and its ring, counter-clockwise from
+/// the triangle's side on.
+bool GatherEdges(Far::TopologyLevel const& level, Index face,
+                 std::array<far_ext::OrientedEdge, kNumPlaces>& places) {
     size_t at = 0;
     for (Index vertex : level.GetFaceVertices(face)) {
         auto const faces = level.GetVertexFaces(vertex);
@@ -69,13 +73,16 @@ Basis MakeBasis() {
     mesh.numVertices = kSide * kSide;
     std::vector<double> positions;
     for (Index j = 0; j < kSide; ++j) {
-        for (Index i = 0; i < kSide; ++i) positions.insert(positions.end(), {static_cast<double>(i), static_cast<double>(j), 0.0});
+        for (Index i = 0; i < kSide; ++i)
+            positions.insert(positions.end(),
+                             {static_cast<double>(i), static_cast<double>(j), 0.0});
     }
     for (Index j = 0; j + 1 < kSide; ++j) {
         for (Index i = 0; i + 1 < kSide; ++i) {
             Index const a = j * kSide + i;
             mesh.faceSizes.insert(mesh.faceSizes.end(), {3, 3});
-            mesh.faceVertices.insert(mesh.faceVertices.end(), {a, a + 1, a + kSide + 1, a, a + kSide + 1, a + kSide});
+            mesh.faceVertices.insert(mesh.faceVertices.end(),
+                                     {a, a + 1, a + kSide + 1, a, a + kSide + 1, a + kSide});
         }
     }
     auto const refiner = far_ext::CreateRefiner(mesh);
@@ -84,17 +91,20 @@ Basis MakeBasis() {
     refiner->RefineUniform(options);
     auto const base = refiner->GetLevel(0), fine = refiner->GetLevel(2);
     auto const stencils = far_ext::ComposeFormStencils(*refiner, 2).s1;
-    std::vector<double> const points = RefineValues<3>(*refiner, 2, RefineValues<3>(*refiner, 1, positions));
+    std::vector<double> const points =
+        RefineValues<3>(*refiner, 2, RefineValues<3>(*refiner, 1, positions));
 
     Index const face = 2 * ((kSide / 2) * (kSide - 1) + kSide / 2);  // corners (4,4), (5,4), (5,5)
     std::vector<std::pair<Index, Terms>> nodes;
     Eigen::Matrix<double, kNumTerms, kNumTerms> system;
     for (Index vertex = 0; vertex < fine.GetNumVertices(); ++vertex) {
-        double const x = points[3 * static_cast<size_t>(vertex)] - kSide / 2, y = points[3 * static_cast<size_t>(vertex) + 1] - kSide / 2;
+        double const x = points[3 * static_cast<size_t>(vertex)] - kSide / 2,
+                     y = points[3 * static_cast<size_t>(vertex) + 1] - kSide / 2;
         double const s = x - y, t = y;  // (1,0) is s, (1,1) is t
         if (s < -0.01 || t < -0.01 || s + t > 1.01) continue;
         Terms const terms = MakeTerms(s, t);
-        system.row(static_cast<Eigen::Index>(nodes.size())) = Eigen::Map<Eigen::RowVectorXd const>(terms.data(), kNumTerms);
+        system.row(static_cast<Eigen::Index>(nodes.size())) =
+            Eigen::Map<Eigen::RowVectorXd const>(terms.data(), kNumTerms);
         nodes.emplace_back(vertex, terms);
     }
     Eigen::FullPivLU<Eigen::Matrix<double, kNumTerms, kNumTerms>> const solver(system);
@@ -107,18 +117,23 @@ Basis MakeBasis() {
     for (size_t place = 0; place < kNumPlaces; ++place) {
         if (std::find(seen.begin(), seen.end(), places[place].edge) != seen.end()) continue;
         seen.push_back(places[place].edge);
-        std::vector<double> form(static_cast<size_t>(base.GetNumEdges()), 0.0), refined(static_cast<size_t>(fine.GetNumEdges()));
+        std::vector<double> form(static_cast<size_t>(base.GetNumEdges()), 0.0),
+            refined(static_cast<size_t>(fine.GetNumEdges()));
         form[places[place].edge] = places[place].sign;
         stencils.Apply(form.data(), refined.data(), 1);
         Eigen::Matrix<double, kNumTerms, 2> values;
         for (size_t k = 0; k < kNumTerms; ++k) {
-            Eigen::Vector3d const v = covectors.Find(nodes[k].first, refined, points).GetVector();  // the lattice's own metric: w(d/dx), w(d/dy)
+            Eigen::Vector3d const v =
+                covectors.Find(nodes[k].first, refined, points)
+                    .GetVector();  // the lattice's own metric: w(d/dx), w(d/dy)
             values.row(static_cast<Eigen::Index>(k)) << v.x(), v.x() + v.y();
         }
         Eigen::Matrix<double, kNumTerms, 2> const found = solver.solve(values);
         Basis::Entry entry{place, {}};
         for (size_t c = 0; c < 2; ++c) {
-            for (size_t k = 0; k < kNumTerms; ++k) entry.components[c][k] = found(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(c));
+            for (size_t k = 0; k < kNumTerms; ++k)
+                entry.components[c][k] =
+                    found(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(c));
         }
         basis.entries.push_back(entry);
     }
@@ -127,7 +142,8 @@ Basis MakeBasis() {
 
 }  // namespace
 
-bool TriangleFormPatch::Bind(Far::TopologyLevel const& level, Index face, std::span<double const> form) {
+bool TriangleFormPatch::Bind(Far::TopologyLevel const& level, Index face,
+                             std::span<double const> form) {
     std::array<far_ext::OrientedEdge, kNumPlaces> places;
     if (!GatherEdges(level, face, places)) return false;
     static Basis const basis = MakeBasis();
@@ -136,7 +152,8 @@ bool TriangleFormPatch::Bind(Far::TopologyLevel const& level, Index face, std::s
         auto const& [edge, sign] = places[entry.place];
         double const value = sign * form[edge];
         for (size_t c = 0; c < 2; ++c) {
-            for (size_t k = 0; k < kNumTerms; ++k) _coefficients[c][k] += value * entry.components[c][k];
+            for (size_t k = 0; k < kNumTerms; ++k)
+                _coefficients[c][k] += value * entry.components[c][k];
         }
     }
     return true;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -10,11 +11,11 @@
 
 namespace limn::eval {
 
-/// The limit of a 1-form in a triangle among regular ones (Loop, all three corners of valence 6): a quartic polynomial per
-/// component, from the 24 edges of the triangle's neighbourhood.
+/// The limit of a 1-form in a triangle among regular ones (Loop, all three corners of valence 6): a
+/// quartic polynomial per component, from the 24 edges of the triangle's neighbourhood.
 ///
-/// The polynomials are not written down: on a lattice the exact limits at the 15 vertices of a triangle refined twice are
-/// known (VertexCovectors), and 15 points determine a quartic.
+/// The polynomials are not written down: on a lattice the exact limits at the 15 vertices of a
+/// triangle refined twice are known (VertexCovectors), and 15 points determine a quartic.
 ///
 /// Source  [Wang06] Sec. 4.1; forms.md 3.5, 7.2
 class TriangleFormPatch {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/forms/vertex_covectors.h"
 
 #include <cmath>
@@ -8,14 +9,14 @@
 #include "far_ext/forms/find_wheel.h"
 #include "far_ext/forms/form_operators.h"
 
-
 namespace limn::eval {
 
 namespace {
 
 using far_ext::Wheel;
 
-/// A left eigenvector of the vertex rules at a vertex: weights of the vertex, of the spokes' ends and (quads) of the far corners.
+/// A left eigenvector of the vertex rules at a vertex: weights of the vertex, of the spokes' ends
+/// and (quads) of the far corners.
 struct TangentMask {
     double eigenvalue = 0.5, vertex = 0.0;
     std::vector<double> ends, corners;
@@ -51,11 +52,14 @@ std::array<TangentMask, 2> MakeSmoothMasks(bool isLoop, Wheel const& wheel) {
     return masks;
 }
 
-/// Along and across a boundary or crease curve: the fan of `size` faces that starts at spoke `first`.
+/// Along and across a boundary or crease curve: the fan of `size` faces that starts at spoke
+/// `first`.
 std::array<TangentMask, 2> MakeCurveMasks(bool isLoop, Wheel const& wheel, int first, int size) {
     std::array<TangentMask, 2> masks{MakeEmpty(wheel), MakeEmpty(wheel)};
     int const k = wheel.GetNumFaces(), numSpokes = wheel.GetNumSpokes();
-    auto const end = [&](TangentMask& mask, int i) -> double& { return mask.ends[static_cast<size_t>((first + i) % numSpokes)]; };
+    auto const end = [&](TangentMask& mask, int i) -> double& {
+        return mask.ends[static_cast<size_t>((first + i) % numSpokes)];
+    };
     end(masks[0], 0) = 1.0;
     end(masks[0], size) = -1.0;
     TangentMask& across = masks[1];
@@ -70,12 +74,15 @@ std::array<TangentMask, 2> MakeCurveMasks(bool isLoop, Wheel const& wheel, int f
     double sum = 0.0, cornerSum = 0.0;
     for (int i = 1; i < size; ++i) sum += end(across, i) = std::sin(angle * i);
     for (int j = 0; !isLoop && j < size; ++j) {
-        double const corner = (std::sin(angle * j) + std::sin(angle * (j + 1))) / (4.0 * (4.0 * lambda - 1.0));
+        double const corner =
+            (std::sin(angle * j) + std::sin(angle * (j + 1))) / (4.0 * (4.0 * lambda - 1.0));
         cornerSum += across.corners[static_cast<size_t>((first + j) % k)] = corner;
     }
     double const firstCorner = across.corners[static_cast<size_t>(first % k)];
-    double const atEnds = isLoop ? (std::sin(angle) / 8.0 - sum / 8.0) / (lambda - 0.25)
-                                 : (std::sin(angle) / 16.0 + firstCorner / 4.0 - (sum + cornerSum) / 8.0) / (lambda - 0.25);
+    double const atEnds =
+        isLoop ? (std::sin(angle) / 8.0 - sum / 8.0) / (lambda - 0.25)
+               : (std::sin(angle) / 16.0 + firstCorner / 4.0 - (sum + cornerSum) / 8.0) /
+                     (lambda - 0.25);
     end(across, 0) = end(across, size) = atEnds;
     across.vertex = -2.0 * atEnds - sum - cornerSum;
     return masks;
@@ -86,7 +93,8 @@ std::array<TangentMask, 2> MakeCornerMasks(Wheel const& wheel, int first, int si
     std::array<TangentMask, 2> masks{MakeEmpty(wheel), MakeEmpty(wheel)};
     for (size_t a = 0; a < 2; ++a) {
         masks[a].vertex = -1.0;
-        masks[a].ends[static_cast<size_t>((first + (a == 0 ? 0 : size)) % wheel.GetNumSpokes())] = 1.0;
+        masks[a].ends[static_cast<size_t>((first + (a == 0 ? 0 : size)) % wheel.GetNumSpokes())] =
+            1.0;
     }
     return masks;
 }
@@ -95,7 +103,9 @@ std::array<TangentMask, 2> MakeMasks(bool isLoop, Wheel const& wheel) {
     std::vector<int> cuts;
     int const last = wheel.GetNumSpokes() - 1;
     for (int i = 0; i <= last; ++i) {
-        if (wheel.parent.isSharp[static_cast<size_t>(i)] || (!wheel.isInterior && (i == 0 || i == last))) cuts.push_back(i);
+        if (wheel.parent.isSharp[static_cast<size_t>(i)] ||
+            (!wheel.isInterior && (i == 0 || i == last)))
+            cuts.push_back(i);
     }
     bool const isSmooth = wheel.isInterior && cuts.size() < 2;
     if (isSmooth) return MakeSmoothMasks(isLoop, wheel);
@@ -110,26 +120,35 @@ std::array<TangentMask, 2> MakeMasks(bool isLoop, Wheel const& wheel) {
 Eigen::Vector3d VertexCovector::GetNormal() const {
     Eigen::Vector3d const normal = tangents[0].cross(tangents[1]);
     double const length = normal.norm();
-    return length > 1e-12 * tangents[0].norm() * tangents[1].norm() ? Eigen::Vector3d(normal / length) : Eigen::Vector3d::Zero();
+    return length > 1e-12 * tangents[0].norm() * tangents[1].norm()
+               ? Eigen::Vector3d(normal / length)
+               : Eigen::Vector3d::Zero();
 }
 
 Eigen::Vector3d VertexCovector::GetVector() const {
-    double const e = tangents[0].squaredNorm(), f = tangents[0].dot(tangents[1]), g = tangents[1].squaredNorm();
+    double const e = tangents[0].squaredNorm(), f = tangents[0].dot(tangents[1]),
+                 g = tangents[1].squaredNorm();
     double const determinant = e * g - f * f;
     if (!(determinant > 1e-20 * e * g)) return Eigen::Vector3d::Zero();
-    return ((g * values[0] - f * values[1]) * tangents[0] + (e * values[1] - f * values[0]) * tangents[1]) / determinant;
+    return ((g * values[0] - f * values[1]) * tangents[0] +
+            (e * values[1] - f * values[0]) * tangents[1]) /
+           determinant;
 }
 
-/// forms.md 7.2: w(T) = sum t(w_i) w(sp_i) + (quads: paths to far corners) + sum h_j (d1 w)(f_j), h = r (lambda - s)^-1.
+/// forms.md 7.2: w(T) = sum t(w_i) w(sp_i) + (quads: paths to far corners) + sum h_j (d1 w)(f_j), h
+/// = r (lambda - s)^-1.
 VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel const& wheel) {
     bool const isLoop = scheme == Sdc::SCHEME_LOOP;
     int const numSides = isLoop ? 3 : 4;
     far_ext::WheelRows const local = far_ext::MakeWheelRows(scheme, wheel);
     Eigen::Index const k = wheel.GetNumFaces();
     size_t const numSpokes = static_cast<size_t>(wheel.GetNumSpokes());
-    auto const chain = [&](std::vector<double> const& x) { return Eigen::Map<Eigen::VectorXd const>(x.data(), k); };
+    auto const chain = [&](std::vector<double> const& x) {
+        return Eigen::Map<Eigen::VectorXd const>(x.data(), k);
+    };
     Eigen::MatrixXd shares(k, k);
-    for (Eigen::Index j = 0; j < k; ++j) shares.row(j) = chain(local.share[static_cast<size_t>(j)]).transpose();
+    for (Eigen::Index j = 0; j < k; ++j)
+        shares.row(j) = chain(local.share[static_cast<size_t>(j)]).transpose();
 
     auto const masks = MakeMasks(isLoop, wheel);
     Rows rows;
@@ -141,9 +160,12 @@ VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel co
         row.corners = mask.corners;
         row.edges.assign(numSpokes + static_cast<size_t>(k * (numSides - 2)), 0.0);
         auto const addSide = [&](Eigen::Index face, int m, double weight) {
-            if (m == 0) row.edges[static_cast<size_t>(face)] += weight;
-            else if (m == numSides - 1) row.edges[(static_cast<size_t>(face) + 1) % numSpokes] -= weight;
-            else row.edges[numSpokes + static_cast<size_t>(face * (numSides - 2) + m - 1)] += weight;
+            if (m == 0)
+                row.edges[static_cast<size_t>(face)] += weight;
+            else if (m == numSides - 1)
+                row.edges[(static_cast<size_t>(face) + 1) % numSpokes] -= weight;
+            else
+                row.edges[numSpokes + static_cast<size_t>(face * (numSides - 2) + m - 1)] += weight;
         };
         Eigen::VectorXd residue = Eigen::VectorXd::Zero(k);
         for (size_t i = 0; i < numSpokes; ++i) {
@@ -159,11 +181,15 @@ VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel co
         for (Eigen::Index j = 0; !isLoop && j < k; ++j) {
             double const t = mask.corners[static_cast<size_t>(j)];
             if (t == 0.0) continue;
-            for (int m = 0; m < 4; ++m) addSide(j, m, m < 2 ? 0.5 * t : -0.5 * t);  // the mean of both ways round
-            residue += 0.5 * t * (chain(local.flow[static_cast<size_t>(j)]) + chain(local.flow[(static_cast<size_t>(j) + 1) % numSpokes]));
+            for (int m = 0; m < 4; ++m)
+                addSide(j, m, m < 2 ? 0.5 * t : -0.5 * t);  // the mean of both ways round
+            residue += 0.5 * t *
+                       (chain(local.flow[static_cast<size_t>(j)]) +
+                        chain(local.flow[(static_cast<size_t>(j) + 1) % numSpokes]));
         }
         if (residue.isZero(0.0)) continue;
-        Eigen::MatrixXd const system = (mask.eigenvalue * Eigen::MatrixXd::Identity(k, k) - shares).transpose();
+        Eigen::MatrixXd const system =
+            (mask.eigenvalue * Eigen::MatrixXd::Identity(k, k) - shares).transpose();
         Eigen::VectorXd const h = system.partialPivLu().solve(residue);
         for (Eigen::Index j = 0; j < k; ++j) {
             for (int m = 0; m < numSides; ++m) addSide(j, m, h[j]);
@@ -172,16 +198,21 @@ VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel co
     return rows;
 }
 
-VertexCovectors::VertexCovectors(Far::TopologyRefiner const& refiner, int level) : _refiner(refiner), _level(refiner.GetLevel(level)) {
+VertexCovectors::VertexCovectors(Far::TopologyRefiner const& refiner, int level)
+    : _refiner(refiner), _level(refiner.GetLevel(level)) {
     for (Index vertex = 0; vertex < _level.GetNumVertices(); ++vertex) {
         size_t const k = static_cast<size_t>(_level.GetVertexFaces(vertex).size());
         if (k == 0 || !far_ext::IsSmoothInterior(_level, vertex)) continue;
         if (_plainRows.size() <= k) _plainRows.resize(k + 1);
-        if (!_plainRows[k]) _plainRows[k] = MakeRows(refiner.GetSchemeType(), far_ext::MakeSmoothWheel(refiner.GetSchemeType(), static_cast<int>(k)));
+        if (!_plainRows[k])
+            _plainRows[k] =
+                MakeRows(refiner.GetSchemeType(),
+                         far_ext::MakeSmoothWheel(refiner.GetSchemeType(), static_cast<int>(k)));
     }
 }
 
-VertexCovector VertexCovectors::Find(Index vertex, std::span<double const> form, std::span<double const> positions) const {
+VertexCovector VertexCovectors::Find(Index vertex, std::span<double const> form,
+                                     std::span<double const> positions) const {
     int const numSides = _refiner.GetSchemeType() == Sdc::SCHEME_LOOP ? 3 : 4;
     auto const faces = _level.GetVertexFaces(vertex);
     auto const corners = _level.GetVertexFaceLocalIndices(vertex);
@@ -190,10 +221,14 @@ VertexCovector VertexCovectors::Find(Index vertex, std::span<double const> form,
     if (faces.size() == 0) return result;
     Rows own;
     bool const isPlain = far_ext::IsSmoothInterior(_level, vertex);
-    if (!isPlain) own = MakeRows(_refiner.GetSchemeType(), far_ext::FindWheel(_refiner, _level, nullptr, vertex));
+    if (!isPlain)
+        own = MakeRows(_refiner.GetSchemeType(),
+                       far_ext::FindWheel(_refiner, _level, nullptr, vertex));
     Rows const& rows = isPlain ? *_plainRows[static_cast<size_t>(faces.size())] : own;
 
-    auto const at = [&](Index v) { return Eigen::Map<Eigen::Vector3d const>(&positions[3 * static_cast<size_t>(v)]); };
+    auto const at = [&](Index v) {
+        return Eigen::Map<Eigen::Vector3d const>(&positions[3 * static_cast<size_t>(v)]);
+    };
     for (size_t a = 0; a < 2; ++a) result.tangents[a] = rows[a].vertex * at(vertex);
     for (int i = 0; i < edges.size(); ++i) {
         auto const ends = _level.GetEdgeVertices(edges[i]);
@@ -208,11 +243,13 @@ VertexCovector VertexCovectors::Find(Index vertex, std::span<double const> form,
     for (int j = 0; j < faces.size(); ++j) {
         for (int m = 1; m < numSides - 1; ++m, ++place) {
             auto const side = far_ext::GetFaceSide(_level, faces[j], (corners[j] + m) % numSides);
-            for (size_t a = 0; a < 2; ++a) result.values[a] += rows[a].edges[place] * side.sign * form[side.edge];
+            for (size_t a = 0; a < 2; ++a)
+                result.values[a] += rows[a].edges[place] * side.sign * form[side.edge];
         }
         if (numSides == 3) continue;
         Eigen::Vector3d const corner = at(_level.GetFaceVertices(faces[j])[(corners[j] + 2) % 4]);
-        for (size_t a = 0; a < 2; ++a) result.tangents[a] += rows[a].corners[static_cast<size_t>(j)] * corner;
+        for (size_t a = 0; a < 2; ++a)
+            result.tangents[a] += rows[a].corners[static_cast<size_t>(j)] * corner;
     }
     return result;
 }

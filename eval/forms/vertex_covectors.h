@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -12,13 +13,15 @@
 
 namespace limn::eval {
 
-/// The limit of a 1-form at a vertex, on a pair of tangents of the limit surface: w(T_a) and the T_a themselves, from
-/// the control points. Tangents and values share a scale that drops out of the vector they make.
+/// The limit of a 1-form at a vertex, on a pair of tangents of the limit surface: w(T_a) and the
+/// T_a themselves, from the control points. Tangents and values share a scale that drops out of the
+/// vector they make.
 struct VertexCovector {
     std::array<Eigen::Vector3d, 2> tangents;
     std::array<double, 2> values{};
 
-    /// V = sum_ab (g^-1)_ab w(T_b) T_a, the tangent vector that w stands for; 0 where the tangents span no plane.
+    /// V = sum_ab (g^-1)_ab w(T_b) T_a, the tangent vector that w stands for; 0 where the tangents
+    /// span no plane.
     Eigen::Vector3d GetVector() const;
     /// T_0 x T_1, of length 1 or 0: the limit normal.
     Eigen::Vector3d GetNormal() const;
@@ -26,9 +29,10 @@ struct VertexCovector {
 
 /// Limits at the vertices of one level.
 ///
-/// Exact      at smooth interior vertices, on boundaries and infinitely sharp creases (the side of the first fan) for fans of
-///            up to 5 triangles or 2 to 3 quads, at corners. Semi-sharp features count as sharp: refine until they have faded.
-///            Larger fans and single quads on a smooth boundary have no limit, and darts no exact mask: the value is an
+/// Exact      at smooth interior vertices, on boundaries and infinitely sharp creases (the side of
+///            the first fan) for fans of up to 5 triangles or 2 to 3 quads, at corners. Semi-sharp
+///            features count as sharp: refine until they have faded. Larger fans and single quads
+///            on a smooth boundary have no limit, and darts no exact mask: the value is an
 ///            approximation there.
 /// Threads    immutable; Find may run on many.
 /// \param form       per edge of the level
@@ -39,7 +43,8 @@ class VertexCovectors {
 public:
     VertexCovectors(Far::TopologyRefiner const& refiner, int level);
 
-    VertexCovector Find(Index vertex, std::span<double const> form, std::span<double const> positions) const;
+    VertexCovector Find(Index vertex, std::span<double const> form,
+                        std::span<double const> positions) const;
 
 private:
     /// The weights behind T and w(T) at a vertex.

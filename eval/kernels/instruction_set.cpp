@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/kernels/instruction_set.h"
 
 #include <atomic>
@@ -8,7 +9,8 @@ namespace limn::eval {
 
 namespace {
 
-constexpr InstructionSet kWidestFirst[] = {InstructionSet::Avx512, InstructionSet::Avx2, InstructionSet::Sse2};
+constexpr InstructionSet kWidestFirst[] = {InstructionSet::Avx512, InstructionSet::Avx2,
+                                           InstructionSet::Sse2};
 
 bool IsSupported(InstructionSet set) {
     __builtin_cpu_init();
@@ -16,8 +18,10 @@ bool IsSupported(InstructionSet set) {
         case InstructionSet::Avx512:
             return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
                    __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
-        case InstructionSet::Avx2: return __builtin_cpu_supports("avx2");
-        case InstructionSet::Sse2: return true;
+        case InstructionSet::Avx2:
+            return __builtin_cpu_supports("avx2");
+        case InstructionSet::Sse2:
+            return true;
     }
     return false;
 }
@@ -40,7 +44,9 @@ std::atomic<InstructionSet>& Chosen() {
 
 }  // namespace
 
-InstructionSet GetInstructionSet() { return Chosen().load(std::memory_order_relaxed); }
+InstructionSet GetInstructionSet() {
+    return Chosen().load(std::memory_order_relaxed);
+}
 
 bool SelectInstructionSet(InstructionSet set) {
     if (!IsSupported(set)) return false;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -9,15 +10,17 @@
 
 namespace limn::eval {
 
-/// Calls work(begin, end) for the rows 0 to count in chunks of fixed size, on all threads, and returns what it
-/// returned, chunk by chunk: summed up in that order, results do not depend on the number of threads.
+/// Calls work(begin, end) for the rows 0 to count in chunks of fixed size, on all threads, and
+/// returns what it returned, chunk by chunk: summed up in that order, results do not depend on the
+/// number of threads.
 template <class Work>
 auto MapChunks(Index count, Work const& work) {
     constexpr Index kChunk = 4096;
     Index const numChunks = (count + kChunk - 1) / kChunk;
     std::vector<decltype(work(Index(), Index()))> results(static_cast<size_t>(numChunks));
     tbb::parallel_for(Index(0), numChunks, [&](Index chunk) {
-        results[static_cast<size_t>(chunk)] = work(chunk * kChunk, std::min(count, (chunk + 1) * kChunk));
+        results[static_cast<size_t>(chunk)] =
+            work(chunk * kChunk, std::min(count, (chunk + 1) * kChunk));
     });
     return results;
 }
@@ -35,10 +38,14 @@ void ForEachChunk(Index count, Work const& work) {
 template <class F>
 void WithLength(int length, F const& f) {
     switch (length) {
-        case 1: return f.template operator()<1>();
-        case 2: return f.template operator()<2>();
-        case 3: return f.template operator()<3>();
-        default: return f.template operator()<4>();
+        case 1:
+            return f.template operator()<1>();
+        case 2:
+            return f.template operator()<2>();
+        case 3:
+            return f.template operator()<3>();
+        default:
+            return f.template operator()<4>();
     }
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -7,8 +8,8 @@
 
 namespace limn::eval {
 
-/// Calls work(first, last) for parts of [begin, end): shared out to TBB's threads, or at once where the whole
-/// is no larger than `grain` and not worth sharing.
+/// Calls work(first, last) for parts of [begin, end): shared out to TBB's threads, or at once where
+/// the whole is no larger than `grain` and not worth sharing.
 template <class Work>
 void ForParts(Index begin, Index end, Index grain, Work const& work) {
     if (end - begin <= grain) {

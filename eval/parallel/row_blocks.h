@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <vector>
@@ -15,12 +16,14 @@ using DoubleLanes = Eigen::Array4d;
 
 constexpr Index kRowsPerBlock = 2048;
 
-/// Calls run(begin, end, block) for blocks of rows, by the arena's threads. Blocks do not depend on these.
+/// Calls run(begin, end, block) for blocks of rows, by the arena's threads. Blocks do not depend on
+/// these.
 template <class Run>
 void ForEachBlock(Index numRows, Run const& run) {
     Index const numBlocks = (numRows + kRowsPerBlock - 1) / kRowsPerBlock;
     auto const runBlock = [&](Index block) {
-        run(block * kRowsPerBlock, std::min(numRows, (block + 1) * kRowsPerBlock), static_cast<size_t>(block));
+        run(block * kRowsPerBlock, std::min(numRows, (block + 1) * kRowsPerBlock),
+            static_cast<size_t>(block));
     };
     if (numBlocks <= 2) {  // not worth waking anyone
         for (Index block = 0; block < numBlocks; ++block) runBlock(block);
@@ -37,10 +40,12 @@ void ForEachRow(Index numRows, Run const& run) {
     });
 }
 
-/// Sum of term(row), added within blocks and then block after block: the same bits whatever the threads.
+/// Sum of term(row), added within blocks and then block after block: the same bits whatever the
+/// threads.
 template <class Term>
 DoubleLanes SumRows(Index numRows, Term const& term) {
-    std::vector<DoubleLanes> partial(static_cast<size_t>(numRows / kRowsPerBlock + 1), DoubleLanes::Zero());
+    std::vector<DoubleLanes> partial(static_cast<size_t>(numRows / kRowsPerBlock + 1),
+                                     DoubleLanes::Zero());
     ForEachBlock(numRows, [&](Index begin, Index end, size_t block) {
         DoubleLanes sum = DoubleLanes::Zero();
         for (Index row = begin; row < end; ++row) sum += term(row);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/stencils/compiled_stencils.h"
 
 #include <algorithm>
@@ -16,11 +17,14 @@ constexpr Index kRowsPerTask = 8192;  // some tens of microseconds
 
 }  // namespace
 
-CompiledStencils::CompiledStencils(far_ext::StencilGroups groups, Options options) : _groups(std::move(groups)) {
+CompiledStencils::CompiledStencils(far_ext::StencilGroups groups, Options options)
+    : _groups(std::move(groups)) {
     for (auto const& block : _groups.blocks) {
         if (block.numColumns <= far_ext::StencilGroups::kMaxColumns) continue;
-        throw Error(ErrorCode::BadOption, fmt::format("a group of stencils has {} control vertices; at most {} are possible",
-                                                      block.numColumns, far_ext::StencilGroups::kMaxColumns));
+        throw Error(
+            ErrorCode::BadOption,
+            fmt::format("a group of stencils has {} control vertices; at most {} are possible",
+                        block.numColumns, far_ext::StencilGroups::kMaxColumns));
     }
     if (options.isSliced) {
         _slices = MakeSlices(_groups);
@@ -33,17 +37,20 @@ CompiledStencils CompiledStencils::Compile(far_ext::StencilRowsView const& rows,
     return CompiledStencils(far_ext::GroupRows(rows), options);
 }
 
-CompiledStencils CompiledStencils::Compile(Far::StencilTableReal<float> const& table, Options options) {
+CompiledStencils CompiledStencils::Compile(Far::StencilTableReal<float> const& table,
+                                           Options options) {
     return Compile(far_ext::ViewStencils(table), options);
 }
 
-CompiledStencils CompiledStencils::Compile(Far::LimitStencilTableReal<float> const& table, Options options) {
+CompiledStencils CompiledStencils::Compile(Far::LimitStencilTableReal<float> const& table,
+                                           Options options) {
     return Compile(far_ext::ViewLimitStencils(table), options);
 }
 
 CompiledStencils::Slices CompiledStencils::MakeSlices(far_ext::StencilGroups const& groups) {
     constexpr Index W = StencilSliceArrays::kLanes;
-    constexpr Index kWindow = 256;  // rows sorted together: far enough for equal sizes, near enough for the cache
+    constexpr Index kWindow =
+        256;  // rows sorted together: far enough for equal sizes, near enough for the cache
     struct Row {
         Index row;
         int size;
@@ -53,7 +60,8 @@ CompiledStencils::Slices CompiledStencils::MakeSlices(far_ext::StencilGroups con
     std::vector<Row> rows;
     for (auto const& run : singles.runs) {
         for (int i = 0; i < run.numRows; ++i) {
-            rows.push_back({run.firstRow + i, run.size, run.firstIndex + i * run.size, run.firstWeight});
+            rows.push_back(
+                {run.firstRow + i, run.size, run.firstIndex + i * run.size, run.firstWeight});
         }
     }
     Index const numRows = static_cast<Index>(rows.size());
@@ -71,14 +79,16 @@ CompiledStencils::Slices CompiledStencils::MakeSlices(far_ext::StencilGroups con
                 // Filled up with weight 0 at a point the row uses anyway.
                 Row const& row = rows[begin + std::min(l, numLanes - 1)];
                 bool const isEntry = l < numLanes && k < row.size;
-                slices.indices.push_back(row.size > 0 ? singles.indices[row.firstIndex + std::min(k, row.size - 1)] : 0);
+                slices.indices.push_back(
+                    row.size > 0 ? singles.indices[row.firstIndex + std::min(k, row.size - 1)] : 0);
                 for (int set = 0; set < groups.numSets; ++set) {
                     Index const weight = row.firstWeight + set * row.size + k;
                     slices.weights[set].push_back(isEntry ? singles.weights[weight] : 0.0f);
                 }
             }
         }
-        for (Index l = 0; l < W; ++l) slices.rows.push_back(l < numLanes ? rows[begin + l].row : -1);
+        for (Index l = 0; l < W; ++l)
+            slices.rows.push_back(l < numLanes ? rows[begin + l].row : -1);
         slices.offsets.push_back(slices.indices.size() / W);
     }
     return slices;
@@ -100,8 +110,9 @@ void CompiledStencils::Evaluate(StencilJob const& job) const {
 void CompiledStencils::EvaluateGroups(StencilJob const& job) const {
     Index const numGroups = static_cast<Index>(_groups.groups.size());
     if (numGroups == 0) return;
-    StencilGroupArrays const arrays{_groups.groups.data(),   _groups.blocks.data(),    _groups.shapes.data(),
-                                    _groups.runLengths.data(), _groups.controls.data(), _groups.runStarts.data(),
+    StencilGroupArrays const arrays{_groups.groups.data(),   _groups.blocks.data(),
+                                    _groups.shapes.data(),   _groups.runLengths.data(),
+                                    _groups.controls.data(), _groups.runStarts.data(),
                                     _groups.weights.data()};
     Index const rowsPerGroup = std::max(1, _groups.numRows / numGroups);
     ForParts(0, numGroups, std::max(1, kRowsPerTask / rowsPerGroup),
@@ -112,15 +123,18 @@ void CompiledStencils::EvaluateSingles(StencilJob const& job) const {
     auto const& singles = _groups.singles;
     Index const numRuns = static_cast<Index>(singles.runs.size());
     if (numRuns == 0) return;
-    StencilRunArrays const arrays{singles.runs.data(), singles.indices.data(), singles.weights.data()};
+    StencilRunArrays const arrays{singles.runs.data(), singles.indices.data(),
+                                  singles.weights.data()};
     Index const rowsPerRun = std::max(1, _groups.numRows / numRuns);
     ForParts(0, numRuns, std::max(1, kRowsPerTask / rowsPerRun),
              [&](Index first, Index last) { EvaluateStencilRuns(job, arrays, first, last); });
 }
 
 void CompiledStencils::EvaluateSlices(StencilJob const& job) const {
-    StencilSliceArrays arrays{_slices.offsets.data(), _slices.rows.data(), _slices.indices.data(), {}};
-    for (int set = 0; set < _groups.numSets; ++set) arrays.weights[set] = _slices.weights[set].data();
+    StencilSliceArrays arrays{
+        _slices.offsets.data(), _slices.rows.data(), _slices.indices.data(), {}};
+    for (int set = 0; set < _groups.numSets; ++set)
+        arrays.weights[set] = _slices.weights[set].data();
     ForParts(0, _slices.GetNum(), kRowsPerTask / StencilSliceArrays::kLanes,
              [&](Index first, Index last) { EvaluateStencilSlices(job, arrays, first, last); });
 }

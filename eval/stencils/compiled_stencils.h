@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <utility>
@@ -12,18 +13,20 @@ namespace limn::eval {
 struct StencilJob;
 
 /// A stencil table in the forms that are evaluated fastest, side by side and chosen by counting:
-/// grouped rows with weight blocks kept once, and single rows with their weights kept once; or, where
-/// single rows repeat little or data is one float per point, these sorted by size and sliced instead.
+/// grouped rows with weight blocks kept once, and single rows with their weights kept once; or,
+/// where single rows repeat little or data is one float per point, these sorted by size and sliced
+/// instead.
 ///
-/// Shape    GetNumStencils() rows over GetNumControlVertices() control vertices; 1 weight set (values), 3
-///          (and first derivatives) or 6 (and second ones).
+/// Shape    GetNumStencils() rows over GetNumControlVertices() control vertices; 1 weight set
+///          (values), 3 (and first derivatives) or 6 (and second ones).
 /// Threads  Immutable once built; safe to share.
 /// Usable from C++17. Evaluated through SimdEvaluator.
 class CompiledStencils {
 public:
     struct Options {
-        /// Single rows in slices of 16 of nearly one size: for one float per point, and for rows of many weights and sizes at
-        /// any multiple of four, as 1-forms have them. Either form takes any length.
+        /// Single rows in slices of 16 of nearly one size: for one float per point, and for rows of
+        /// many weights and sizes at any multiple of four, as 1-forms have them. Either form takes
+        /// any length.
         bool isSliced = false;
     };
 
@@ -31,16 +34,19 @@ public:
     ///
     /// \throws Error  BadOption: a group of more than StencilGroups::kMaxColumns control vertices
     CompiledStencils(far_ext::StencilGroups groups, Options options);
-    explicit CompiledStencils(far_ext::StencilGroups groups) : CompiledStencils(std::move(groups), Options()) {}
+    explicit CompiledStencils(far_ext::StencilGroups groups)
+        : CompiledStencils(std::move(groups), Options()) {}
 
     /// Compiles rows as they stand.
     ///
     /// \throws Error  as far_ext::Validate and far_ext::GroupRows
     static CompiledStencils Compile(far_ext::StencilRowsView const& rows, Options options);
 
-    /// Compiles a table of Far (a Far::StencilTable or Far::LimitStencilTable), which is not kept. Limit stencils bring as many derivatives as they hold.
+    /// Compiles a table of Far (a Far::StencilTable or Far::LimitStencilTable), which is not kept.
+    /// Limit stencils bring as many derivatives as they hold.
     static CompiledStencils Compile(Far::StencilTableReal<float> const& table, Options options);
-    static CompiledStencils Compile(Far::LimitStencilTableReal<float> const& table, Options options);
+    static CompiledStencils Compile(Far::LimitStencilTableReal<float> const& table,
+                                    Options options);
 
     template <class Table>
     static CompiledStencils Compile(Table const& table) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/stencils/place_stencils.h"
 
 #include <algorithm>
@@ -16,7 +17,8 @@ namespace {
 
 Eigen::AlignedBox3d GetBounds(std::span<double const> positions) {
     Eigen::AlignedBox3d box;
-    for (size_t i = 0; i < positions.size(); i += 3) box.extend(Eigen::Map<Eigen::Vector3d const>(&positions[i]));
+    for (size_t i = 0; i < positions.size(); i += 3)
+        box.extend(Eigen::Map<Eigen::Vector3d const>(&positions[i]));
     return box;
 }
 
@@ -43,7 +45,9 @@ PlaceStencils::PlaceStencils(LimitSurface const& surface, std::vector<SurfacePla
 void PlaceStencils::AddRow(FaceTree const& tree, PatchPoint const& at) {
     for (size_t point = 0; point < tree.GetPoints().size(); ++point) {
         auto const weights = EvaluateDerivatives(tree, at, static_cast<int>(point));
-        if (std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 0.0; })) continue;
+        if (std::all_of(weights.begin(), weights.end(),
+                        [](double weight) { return weight == 0.0; }))
+            continue;
         _indices.push_back(tree.GetPoints()[point]);
         _weights.push_back(weights);
     }
@@ -55,27 +59,33 @@ SurfaceDerivatives PlaceStencils::ApplyRow(size_t row, double const* positions) 
     SurfaceDerivatives d;
     Eigen::Vector3d* const sums[] = {&d.position, &d.ds, &d.dt, &d.dss, &d.dst, &d.dtt};
     for (Eigen::Vector3d* sum : sums) sum->setZero();
-    auto const pointAt = [&](size_t k) { return Eigen::Map<Eigen::Vector3d const>(positions + size_t{3} * _indices[k]); };
+    auto const pointAt = [&](size_t k) {
+        return Eigen::Map<Eigen::Vector3d const>(positions + size_t{3} * _indices[k]);
+    };
     Eigen::Vector3d const origin = pointAt(_offsets[row]);
     for (size_t k = _offsets[row]; k < _offsets[row + 1]; ++k) {
         Eigen::Vector3d const point = pointAt(k) - origin;
-        for (int set = 0; set < far_ext::kMaxWeightSets; ++set) *sums[set] += _weights[k][set] * point;
+        for (int set = 0; set < far_ext::kMaxWeightSets; ++set)
+            *sums[set] += _weights[k][set] * point;
     }
     d.position += origin;
     return d;
 }
 
-/// \param accuracy  tangents shorter than this, relative to the mesh, or with an angle below it are not trusted
+/// \param accuracy  tangents shorter than this, relative to the mesh, or with an angle below it are
+///                  not trusted
 /// \param derive    row -> SurfaceDerivatives
 template <class Derive>
-std::vector<SurfaceSample> PlaceStencils::EvaluateWith(std::span<double const> positions, double orientation,
-                                                       double accuracy, Derive const& derive) const {
+std::vector<SurfaceSample> PlaceStencils::EvaluateWith(std::span<double const> positions,
+                                                       double orientation, double accuracy,
+                                                       Derive const& derive) const {
     std::vector<SurfaceSample> samples(_places.size());
     double const shortest = accuracy * GetBounds(positions).diagonal().norm();
     auto const isTrusted = [&](SurfaceDerivatives const& d) {
         return d.ds.norm() > shortest && d.dt.norm() > shortest && HasTangentPlane(d, accuracy);
     };
-    tbb::enumerable_thread_specific<FaceTree> trees([&] { return FaceTree(_surface, positions, 3); });
+    tbb::enumerable_thread_specific<FaceTree> trees(
+        [&] { return FaceTree(_surface, positions, 3); });
     tbb::parallel_for(tbb::blocked_range<size_t>(0, _places.size(), 256), [&](auto const& range) {
         FaceTree* tree = nullptr;  // made where a place needs it
         for (size_t i = range.begin(); i != range.end(); ++i) {
@@ -96,23 +106,28 @@ std::vector<SurfaceSample> PlaceStencils::EvaluateWith(std::span<double const> p
     return samples;
 }
 
-std::vector<SurfaceSample> PlaceStencils::Evaluate(std::span<double const> positions, double orientation) const {
-    return EvaluateWith(positions, orientation, 1e-7, [&](size_t row) { return ApplyRow(row, positions.data()); });
+std::vector<SurfaceSample> PlaceStencils::Evaluate(std::span<double const> positions,
+                                                   double orientation) const {
+    return EvaluateWith(positions, orientation, 1e-7,
+                        [&](size_t row) { return ApplyRow(row, positions.data()); });
 }
 
-std::vector<SurfaceSample> PlaceStencils::Evaluate(std::span<double const> positions, double orientation,
+std::vector<SurfaceSample> PlaceStencils::Evaluate(std::span<double const> positions,
+                                                   double orientation,
                                                    StencilEvaluator const& evaluator) const {
     Eigen::Vector3d const centre = GetBounds(positions).center();
     std::vector<float> source(positions.size());
     for (size_t i = 0; i < source.size(); ++i) {
         source[i] = static_cast<float>(positions[i] - centre[static_cast<Eigen::Index>(i % 3)]);
-        if (!std::isfinite(source[i])) throw Error(ErrorCode::BadMesh, "a position is too large for an evaluator in float");
+        if (!std::isfinite(source[i]))
+            throw Error(ErrorCode::BadMesh, "a position is too large for an evaluator in float");
     }
     Osd::BufferDescriptor const desc(0, 3, 3);
     size_t const size = GetNumRows() * 3;
     std::vector<float> results(size * far_ext::kMaxWeightSets);
     SimdEvaluator::Targets targets;
-    for (int set = 0; set < far_ext::kMaxWeightSets; ++set) targets.push_back({results.data() + set * size, desc});
+    for (int set = 0; set < far_ext::kMaxWeightSets; ++set)
+        targets.push_back({results.data() + set * size, desc});
     evaluator.EvalStencils(source.data(), desc, targets, 0, static_cast<Index>(GetNumRows()));
     return EvaluateWith(positions, orientation, 1e-4, [&](size_t row) {
         SurfaceDerivatives d;
@@ -131,7 +146,8 @@ far_ext::StencilRows PlaceStencils::MakeRows() const {
     float entry[far_ext::kMaxWeightSets];
     for (size_t row = 0; row < GetNumRows(); ++row) {
         for (size_t k = _offsets[row]; k < _offsets[row + 1]; ++k) {
-            for (int set = 0; set < far_ext::kMaxWeightSets; ++set) entry[set] = static_cast<float>(_weights[k][set]);
+            for (int set = 0; set < far_ext::kMaxWeightSets; ++set)
+                entry[set] = static_cast<float>(_weights[k][set]);
             rows.AddEntry(_indices[k], entry);
         }
         rows.EndRow();

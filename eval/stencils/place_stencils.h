@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <span>
@@ -15,15 +16,16 @@ struct SurfacePlace {
     double s = 0.0, t = 0.0;
 };
 
-/// The limit at listed places as weights over the cage's vertices, for evaluating the same places again
-/// and again while the vertices move.
+/// The limit at listed places as weights over the cage's vertices, for evaluating the same places
+/// again and again while the vertices move.
 ///
 /// Shape      One row per place and weight set: position, ds, dt, dss, dst, dtt, in double.
-/// Precision  Second derivatives at depth k of a face's tree are differences of points 4^-k apart; the
-///            tree keeps its digits by taking them relative to a corner, a row of weights cannot. So
-///            places deeper than kRowDepth (nearer than 2^-6 to an irregular corner), and places whose tangents
-///            vanish or nearly coincide in some frame, are evaluated as EvaluateSample does it. What the rows make
-///            agrees with EvaluateSample to about 1e-12 of the mesh's size.
+/// Precision  Second derivatives at depth k of a face's tree are differences of points 4^-k apart;
+///            the tree keeps its digits by taking them relative to a corner, a row of weights
+///            cannot. So places deeper than kRowDepth (nearer than 2^-6 to an irregular corner),
+///            and places whose tangents vanish or nearly coincide in some frame, are evaluated as
+///            EvaluateSample does it. What the rows make agrees with EvaluateSample to about 1e-12
+///            of the mesh's size.
 /// Threads    Immutable once built; Evaluate works inside in the caller's TBB arena.
 class PlaceStencils {
 public:
@@ -37,9 +39,10 @@ public:
     /// Places that have a row of weights; the others are evaluated on their own.
     size_t GetNumRows() const { return _placeOfRow.size(); }
 
-    /// Samples of all places for one set of positions (3 per vertex), in double. Places on faces without a
-    /// limit are left as they are made.
-    std::vector<SurfaceSample> Evaluate(std::span<double const> positions, double orientation) const;
+    /// Samples of all places for one set of positions (3 per vertex), in double. Places on faces
+    /// without a limit are left as they are made.
+    std::vector<SurfaceSample> Evaluate(std::span<double const> positions,
+                                        double orientation) const;
 
     /// The same with the rows applied in float. Positions are taken relative to their centre first.
     ///
@@ -55,8 +58,8 @@ private:
     void AddRow(FaceTree const& tree, PatchPoint const& at);
     SurfaceDerivatives ApplyRow(size_t row, double const* positions) const;
     template <class Derive>
-    std::vector<SurfaceSample> EvaluateWith(std::span<double const> positions, double orientation, double accuracy,
-                                            Derive const& derive) const;
+    std::vector<SurfaceSample> EvaluateWith(std::span<double const> positions, double orientation,
+                                            double accuracy, Derive const& derive) const;
 
     LimitSurface const& _surface;
     std::vector<SurfacePlace> _places;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/stencils/stencil_evaluator.h"
 
 #include <algorithm>
@@ -17,8 +18,8 @@ namespace {
 
 constexpr std::array kNames{"simd", "osd-cpu", "osd-omp"};
 
-/// Rows first..last-1 through one of OpenSubdiv's evaluators. Its own ranges are not to be trusted (see
-/// SimdEvaluator), so the table's pointers and the targets' are moved, and it starts at 0.
+/// Rows first..last-1 through one of OpenSubdiv's evaluators. Its own ranges are not to be trusted
+/// (see SimdEvaluator), so the table's pointers and the targets' are moved, and it starts at 0.
 template <class Evaluator>
 void EvaluateRange(float const* source, BufferDescriptor const& sourceDesc, Targets const& targets,
                    far_ext::StencilRowsView const& rows, Index first, Index last) {
@@ -34,22 +35,27 @@ void EvaluateRange(float const* source, BufferDescriptor const& sourceDesc, Targ
     Index const count = last - first;
     switch (targets.size()) {
         case 1:
-            Evaluator::EvalStencils(source, sourceDesc, target(0), desc(0), sizes, offsets, indices, weights(0), 0, count);
+            Evaluator::EvalStencils(source, sourceDesc, target(0), desc(0), sizes, offsets, indices,
+                                    weights(0), 0, count);
             break;
         case 3:
-            Evaluator::EvalStencils(source, sourceDesc, target(0), desc(0), target(1), desc(1), target(2), desc(2), sizes,
-                                    offsets, indices, weights(0), weights(1), weights(2), 0, count);
+            Evaluator::EvalStencils(source, sourceDesc, target(0), desc(0), target(1), desc(1),
+                                    target(2), desc(2), sizes, offsets, indices, weights(0),
+                                    weights(1), weights(2), 0, count);
             break;
         default:
-            Evaluator::EvalStencils(source, sourceDesc, target(0), desc(0), target(1), desc(1), target(2), desc(2),
-                                    target(3), desc(3), target(4), desc(4), target(5), desc(5), sizes, offsets, indices,
-                                    weights(0), weights(1), weights(2), weights(3), weights(4), weights(5), 0, count);
+            Evaluator::EvalStencils(
+                source, sourceDesc, target(0), desc(0), target(1), desc(1), target(2), desc(2),
+                target(3), desc(3), target(4), desc(4), target(5), desc(5), sizes, offsets, indices,
+                weights(0), weights(1), weights(2), weights(3), weights(4), weights(5), 0, count);
     }
 }
 
 }  // namespace
 
-char const* GetName(EvaluatorKind kind) { return kNames[static_cast<size_t>(kind)]; }
+char const* GetName(EvaluatorKind kind) {
+    return kNames[static_cast<size_t>(kind)];
+}
 
 std::optional<EvaluatorKind> FindEvaluator(std::string_view name) {
     auto const found = std::find(kNames.begin(), kNames.end(), name);
@@ -58,18 +64,22 @@ std::optional<EvaluatorKind> FindEvaluator(std::string_view name) {
 }
 
 StencilEvaluator::StencilEvaluator(EvaluatorKind kind, far_ext::StencilGroups table) : _kind(kind) {
-    if (kind == EvaluatorKind::Simd) _simd.emplace(std::move(table));
-    else _rows.emplace(table.Expand());
+    if (kind == EvaluatorKind::Simd)
+        _simd.emplace(std::move(table));
+    else
+        _rows.emplace(table.Expand());
 }
 
 StencilEvaluator::StencilEvaluator(EvaluatorKind kind, far_ext::StencilRows table) : _kind(kind) {
     far_ext::Validate(table.GetView());
-    if (kind == EvaluatorKind::Simd) _simd.emplace(far_ext::GroupRows(table.GetView()));
-    else _rows.emplace(std::move(table));
+    if (kind == EvaluatorKind::Simd)
+        _simd.emplace(far_ext::GroupRows(table.GetView()));
+    else
+        _rows.emplace(std::move(table));
 }
 
-void StencilEvaluator::EvalStencils(float const* source, BufferDescriptor const& sourceDesc, Targets const& targets,
-                                    Index start, Index end) const {
+void StencilEvaluator::EvalStencils(float const* source, BufferDescriptor const& sourceDesc,
+                                    Targets const& targets, Index start, Index end) const {
     if (end <= start) return;
     if (_simd) {
         SimdEvaluator::Apply(source, sourceDesc, targets, *_simd, start, end);

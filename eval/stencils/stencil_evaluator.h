@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <optional>
@@ -8,13 +9,13 @@
 
 namespace limn::eval {
 
-/// What applies a stencil table. All agree within float's rounding; each gives the same bits for any
-/// number of threads.
+/// What applies a stencil table. All agree within float's rounding; each gives the same bits for
+/// any number of threads.
 enum class EvaluatorKind {
     Simd,    ///< SimdEvaluator over compiled tables
     OsdCpu,  ///< Osd::CpuEvaluator, the reference, on limn's threads
-    OsdOmp   ///< Osd::OmpEvaluator on OpenMP's own threads (OMP_NUM_THREADS); not to be mixed with the
-             ///< others in one run: its idle threads keep the cores from them
+    OsdOmp   ///< Osd::OmpEvaluator on OpenMP's own threads (OMP_NUM_THREADS); not to be mixed with
+             ///< the others in one run: its idle threads keep the cores from them
 };
 
 /// "simd", "osd-cpu" or "osd-omp"
@@ -36,7 +37,9 @@ public:
     void EvalStencils(float const* source, Osd::BufferDescriptor const& sourceDesc,
                       SimdEvaluator::Targets const& targets, Index start, Index end) const;
 
-    Index GetNumStencils() const { return _simd ? _simd->GetNumStencils() : _rows->GetNumStencils(); }
+    Index GetNumStencils() const {
+        return _simd ? _simd->GetNumStencils() : _rows->GetNumStencils();
+    }
     EvaluatorKind GetKind() const { return _kind; }
 
 private:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -6,7 +7,8 @@
 
 namespace limn::eval {
 
-/// Values to read, or to write for one weight set: point i has `length` floats at values + i * stride.
+/// Values to read, or to write for one weight set: point i has `length` floats at values + i *
+/// stride.
 struct StencilSource {
     float const* values;
     std::ptrdiff_t stride;
@@ -61,15 +63,19 @@ struct StencilSliceArrays {
     float const* weights[far_ext::kMaxWeightSets];
 };
 
-/// Evaluate rows, runs, groups and slices first..last-1. The same bits on every CPU and whichever ranges
-/// the work is cut into: one source, compiled per instruction set without contraction, every sum in a
-/// fixed order. That order is: grouped rows, column after column; sliced rows, entry after entry;
-/// rows and runs, the even entries and the odd ones, then both.
+/// Evaluate rows, runs, groups and slices first..last-1. The same bits on every CPU and whichever
+/// ranges the work is cut into: one source, compiled per instruction set without contraction, every
+/// sum in a fixed order. That order is: grouped rows, column after column; sliced rows, entry after
+/// entry; rows and runs, the even entries and the odd ones, then both.
 ///
 /// \pre all indices are valid; no target overlaps the source or another target
-void EvaluateStencilRows(StencilJob const& job, StencilRowArrays const& rows, Index first, Index last);
-void EvaluateStencilRuns(StencilJob const& job, StencilRunArrays const& runs, Index first, Index last);
-void EvaluateStencilGroups(StencilJob const& job, StencilGroupArrays const& groups, Index first, Index last);
-void EvaluateStencilSlices(StencilJob const& job, StencilSliceArrays const& slices, Index first, Index last);
+void EvaluateStencilRows(StencilJob const& job, StencilRowArrays const& rows, Index first,
+                         Index last);
+void EvaluateStencilRuns(StencilJob const& job, StencilRunArrays const& runs, Index first,
+                         Index last);
+void EvaluateStencilGroups(StencilJob const& job, StencilGroupArrays const& groups, Index first,
+                           Index last);
+void EvaluateStencilSlices(StencilJob const& job, StencilSliceArrays const& slices, Index first,
+                           Index last);
 
 }  // namespace limn::eval

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "eval/surface/limit_surface.h"
@@ -19,11 +20,15 @@ inline FacePlace GetCornerPlace(LimitSurface const& surface, Index face, int cor
     return {0, place[0], place[1]};
 }
 
-/// The place `tau` of the way along the edge from a face's corner to the next one, of `size` corners.
-inline FacePlace GetEdgePlace(LimitSurface const& surface, Index face, int size, int corner, double tau) {
+/// The place `tau` of the way along the edge from a face's corner to the next one, of `size`
+/// corners.
+inline FacePlace GetEdgePlace(LimitSurface const& surface, Index face, int size, int corner,
+                              double tau) {
     int const next = (corner + 1) % size;
-    if (surface.GetNumDomains(face) > 1) {  // in sub-quads (1, 0) and (0, 1) are the middles of edges
-        return tau <= 0.5 ? FacePlace{corner, 2.0 * tau, 0.0} : FacePlace{next, 0.0, 2.0 - 2.0 * tau};
+    if (surface.GetNumDomains(face) >
+        1) {  // in sub-quads (1, 0) and (0, 1) are the middles of edges
+        return tau <= 0.5 ? FacePlace{corner, 2.0 * tau, 0.0}
+                          : FacePlace{next, 0.0, 2.0 - 2.0 * tau};
     }
     auto const a = GetCornerPlace(surface, face, corner), b = GetCornerPlace(surface, face, next);
     return {0, a.s + tau * (b.s - a.s), a.t + tau * (b.t - a.t)};
@@ -41,7 +46,8 @@ void ForEachGaussPoint(LimitSurface const& surface, Index face, Visit visit) {
         for (int j = 0; j < 3; ++j) {
             double const width = surface.IsLoop() ? 1.0 - kGaussNodes[j] : 1.0;
             for (int i = 0; i < 3; ++i) {
-                visit(FacePlace{domain, kGaussNodes[i] * width, kGaussNodes[j]}, kGaussWeights[i] * kGaussWeights[j] * width);
+                visit(FacePlace{domain, kGaussNodes[i] * width, kGaussNodes[j]},
+                      kGaussWeights[i] * kGaussWeights[j] * width);
             }
         }
     }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/surface/finer_surface.h"
 
 #include "eval/surface/surface_sample.h"
@@ -10,7 +11,8 @@ namespace {
 
 /// How often a cage was refined to have so many faces, or 0.
 int FindLevels(far_ext::ControlMesh const& cage, Index numFaces) {
-    double count = cage.scheme == Sdc::SCHEME_LOOP ? 4.0 * cage.GetNumFaces() : static_cast<double>(cage.faceVertices.size());
+    double count = cage.scheme == Sdc::SCHEME_LOOP ? 4.0 * cage.GetNumFaces()
+                                                   : static_cast<double>(cage.faceVertices.size());
     for (int level = 1; level <= 10; ++level, count *= 4.0) {
         if (count == static_cast<double>(numFaces)) return level;
     }
@@ -19,7 +21,9 @@ int FindLevels(far_ext::ControlMesh const& cage, Index numFaces) {
 
 }  // namespace
 
-std::optional<FinerSurface> FinerSurface::Build(LimitSurface const& base, far_ext::ControlMesh const& cage, far_ext::ControlMesh const& finer,
+std::optional<FinerSurface> FinerSurface::Build(LimitSurface const& base,
+                                                far_ext::ControlMesh const& cage,
+                                                far_ext::ControlMesh const& finer,
                                                 std::span<double const> positions) {
     int const levels = cage.scheme == finer.scheme ? FindLevels(cage, finer.GetNumFaces()) : 0;
     if (levels == 0) return {};
@@ -29,11 +33,16 @@ std::optional<FinerSurface> FinerSurface::Build(LimitSurface const& base, far_ex
     refined->RefineUniform(options);
     auto const level = refined->GetLevel(levels);
     size_t const n = cage.scheme == Sdc::SCHEME_LOOP ? 3 : 4;
-    if (level.GetNumVertices() != finer.numVertices || finer.faceVertices.size() != n * finer.faceSizes.size()) return {};
+    if (level.GetNumVertices() != finer.numVertices ||
+        finer.faceVertices.size() != n * finer.faceSizes.size())
+        return {};
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         auto const vertices = level.GetFaceVertices(face);
         for (size_t k = 0; k < n; ++k) {
-            if (finer.faceSizes[face] != static_cast<int>(n) || finer.faceVertices[static_cast<size_t>(face) * n + k] != vertices[static_cast<int>(k)]) return {};
+            if (finer.faceSizes[face] != static_cast<int>(n) ||
+                finer.faceVertices[static_cast<size_t>(face) * n + k] !=
+                    vertices[static_cast<int>(k)])
+                return {};
         }
     }
     FinerSurface surface(base, levels);
@@ -47,9 +56,11 @@ std::optional<FinerSurface> FinerSurface::Build(LimitSurface const& base, far_ex
     return surface;
 }
 
-FinerSurface::Sampler::Sampler(FinerSurface const& surface) : _surface(surface), _tree(*surface._limit, surface._positions, 3) {}
+FinerSurface::Sampler::Sampler(FinerSurface const& surface)
+    : _surface(surface), _tree(*surface._limit, surface._positions, 3) {}
 
-void FinerSurface::Sampler::Evaluate(Index face, int domain, std::span<double const> s, std::span<double const> t, std::span<Eigen::Vector3d> points) {
+void FinerSurface::Sampler::Evaluate(Index face, int domain, std::span<double const> s,
+                                     std::span<double const> t, std::span<Eigen::Vector3d> points) {
     _surface._faces.FindSorted(face, domain, s, t, _places);
     Index bound = -1;
     for (auto const& [at, index] : _places) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -13,24 +14,30 @@
 
 namespace limn::eval {
 
-/// The limit of a mesh whose faces are those of another cage, uniformly refined: at places of that cage.
+/// The limit of a mesh whose faces are those of another cage, uniformly refined: at places of that
+/// cage.
 ///
 /// Threads  immutable once built; a Sampler per thread.
 class FinerSurface {
 public:
     /// \param base       limit of the cage that places are given on; kept only while this is built
-    /// \param finer      mesh with the faces of the cage refined once or more, in OpenSubdiv's order, and the cage's scheme
+    /// \param finer      mesh with the faces of the cage refined once or more, in OpenSubdiv's
+    ///                   order, and the cage's scheme
     /// \param positions  3 per vertex of it
     /// \return           none where its faces are others, or one has no limit where the cage has
-    static std::optional<FinerSurface> Build(LimitSurface const& base, far_ext::ControlMesh const& cage, far_ext::ControlMesh const& finer,
+    static std::optional<FinerSurface> Build(LimitSurface const& base,
+                                             far_ext::ControlMesh const& cage,
+                                             far_ext::ControlMesh const& finer,
                                              std::span<double const> positions);
 
     class Sampler {
     public:
         explicit Sampler(FinerSurface const& surface);
 
-        /// Limit positions. \param face  of the cage, with a limit; \param domain as in LimitSurface
-        void Evaluate(Index face, int domain, std::span<double const> s, std::span<double const> t, std::span<Eigen::Vector3d> points);
+        /// Limit positions. \param face  of the cage, with a limit; \param domain as in
+        /// LimitSurface
+        void Evaluate(Index face, int domain, std::span<double const> s, std::span<double const> t,
+                      std::span<Eigen::Vector3d> points);
 
     private:
         FinerSurface const& _surface;

@@ -1,18 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "eval/surface/face_places.h"
 
 namespace limn::eval {
 
-/// Gauss points of a face, 3 x 3 per piece, on pieces that get smaller by half towards irregular corners, where
-/// the surface's own polynomial pieces do: what is integrated stays smooth on each, and unbounded curvature
-/// counts as far as 2^-10 of the domain.
+/// Gauss points of a face, 3 x 3 per piece, on pieces that get smaller by half towards irregular
+/// corners, where the surface's own polynomial pieces do: what is integrated stays smooth on each,
+/// and unbounded curvature counts as far as 2^-10 of the domain.
 ///
 /// Weights add up to each domain's area (1, on a triangle 1/2).
 class GradedPoints {
 public:
     /// \param surface  kept by reference
-    explicit GradedPoints(LimitSurface const& surface) : _surface(surface), _level(surface.GetRefiner().GetLevel(0)) {}
+    explicit GradedPoints(LimitSurface const& surface)
+        : _surface(surface), _level(surface.GetRefiner().GetLevel(0)) {}
 
     /// Calls visit(FacePlace, weight) for all points of a face with a limit.
     template <class Visit>
@@ -22,28 +24,34 @@ public:
         for (int domain = 0; domain < numDomains; ++domain) {
             unsigned irregular = 0;  // a bit per corner of the domain
             if (numDomains > 1) {
-                irregular = (IsIrregular(vertices[domain]) ? 1u : 0u) | 4u;  // the middle of the face lies opposite
+                irregular = (IsIrregular(vertices[domain]) ? 1u : 0u) |
+                            4u;  // the middle of the face lies opposite
             } else {
                 for (int corner = 0; corner < vertices.size(); ++corner) {
                     if (IsIrregular(vertices[corner])) irregular |= 1u << corner;
                 }
             }
-            if (_surface.IsLoop()) VisitTriangle(domain, {0, 0}, {1, 0}, {0, 1}, irregular, 0, visit);
-            else VisitSquare(domain, 0.0, 0.0, 1.0, irregular, 0, visit);
+            if (_surface.IsLoop())
+                VisitTriangle(domain, {0, 0}, {1, 0}, {0, 1}, irregular, 0, visit);
+            else
+                VisitSquare(domain, 0.0, 0.0, 1.0, irregular, 0, visit);
         }
     }
 
 private:
-    static constexpr int kMinDepth = 1;  // 4 pieces also where all is regular: Spot's integral of K errs by 1e-3, not 8e-3
+    static constexpr int kMinDepth =
+        1;  // 4 pieces also where all is regular: Spot's integral of K errs by 1e-3, not 8e-3
     static constexpr int kMaxDepth = 10;
     using Corner = std::array<double, 2>;
 
     bool IsIrregular(Index vertex) const {
-        return !_level.IsVertexBoundary(vertex) && _level.GetVertexEdges(vertex).size() != (_surface.IsLoop() ? 6 : 4);
+        return !_level.IsVertexBoundary(vertex) &&
+               _level.GetVertexEdges(vertex).size() != (_surface.IsLoop() ? 6 : 4);
     }
 
     template <class Visit>
-    void VisitSquare(int domain, double s, double t, double size, unsigned irregular, int depth, Visit const& visit) const {
+    void VisitSquare(int domain, double s, double t, double size, unsigned irregular, int depth,
+                     Visit const& visit) const {
         if (depth < kMinDepth || (irregular && depth < kMaxDepth)) {
             double const half = 0.5 * size;
             VisitSquare(domain, s, t, half, irregular & 1u, depth + 1, visit);
@@ -54,15 +62,19 @@ private:
         }
         for (int j = 0; j < 3; ++j) {
             for (int i = 0; i < 3; ++i) {
-                visit(FacePlace{domain, s + size * kGaussNodes[i], t + size * kGaussNodes[j]}, size * size * kGaussWeights[i] * kGaussWeights[j]);
+                visit(FacePlace{domain, s + size * kGaussNodes[i], t + size * kGaussNodes[j]},
+                      size * size * kGaussWeights[i] * kGaussWeights[j]);
             }
         }
     }
 
     template <class Visit>
-    void VisitTriangle(int domain, Corner a, Corner b, Corner c, unsigned irregular, int depth, Visit const& visit) const {
+    void VisitTriangle(int domain, Corner a, Corner b, Corner c, unsigned irregular, int depth,
+                       Visit const& visit) const {
         if (depth < kMinDepth || (irregular && depth < kMaxDepth)) {
-            auto const middle = [](Corner const& p, Corner const& q) { return Corner{0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])}; };
+            auto const middle = [](Corner const& p, Corner const& q) {
+                return Corner{0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])};
+            };
             Corner const ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
             VisitTriangle(domain, a, ab, ca, irregular & 1u, depth + 1, visit);
             VisitTriangle(domain, ab, b, bc, irregular & 2u, depth + 1, visit);
@@ -72,7 +84,8 @@ private:
         }
         double const area = std::abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
         for (int j = 0; j < 3; ++j) {
-            double const width = 1.0 - kGaussNodes[j];  // a triangle is the square with one side collapsed
+            double const width =
+                1.0 - kGaussNodes[j];  // a triangle is the square with one side collapsed
             for (int i = 0; i < 3; ++i) {
                 double const u = kGaussNodes[i] * width, v = kGaussNodes[j];
                 double const s = a[0] + u * (b[0] - a[0]) + v * (c[0] - a[0]);

@@ -1,2 +1,3 @@
+// SPDX-License-Identifier: Apache-2.0
 #define LIMN_KERNEL avx512
 #include "eval/surface/inversion_kernel.inc"

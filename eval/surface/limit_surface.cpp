@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/surface/limit_surface.h"
 
 #include <algorithm>
@@ -16,27 +17,32 @@ namespace {
 
 using Level = Far::TopologyLevel;
 
-int RegularValence(bool isLoop) { return isLoop ? 6 : 4; }
-int RegularSize(bool isLoop) { return isLoop ? 3 : 4; }
+int RegularValence(bool isLoop) {
+    return isLoop ? 6 : 4;
+}
+int RegularSize(bool isLoop) {
+    return isLoop ? 3 : 4;
+}
 
 /// Interior, of regular valence, among regular faces, without sharpness.
 std::vector<char> FindRegularVertices(Level const& level, bool isLoop) {
     std::vector<char> isRegular(static_cast<size_t>(level.GetNumVertices()), 0);
     int const valence = RegularValence(isLoop), size = RegularSize(isLoop);
-    tbb::parallel_for(tbb::blocked_range<Index>(0, level.GetNumVertices(), 4096), [&](auto const& range) {
-        for (Index v = range.begin(); v != range.end(); ++v) {
-            auto const faces = level.GetVertexFaces(v);
-            auto const edges = level.GetVertexEdges(v);
-            bool regular = faces.size() == valence && edges.size() == valence &&
-                           !level.IsVertexBoundary(v) && !level.IsVertexNonManifold(v) &&
-                           level.GetVertexSharpness(v) <= 0.0f;
-            for (int i = 0; regular && i < valence; ++i) {
-                regular = level.GetFaceVertices(faces[i]).size() == size &&
-                          level.GetEdgeSharpness(edges[i]) <= 0.0f;
+    tbb::parallel_for(
+        tbb::blocked_range<Index>(0, level.GetNumVertices(), 4096), [&](auto const& range) {
+            for (Index v = range.begin(); v != range.end(); ++v) {
+                auto const faces = level.GetVertexFaces(v);
+                auto const edges = level.GetVertexEdges(v);
+                bool regular = faces.size() == valence && edges.size() == valence &&
+                               !level.IsVertexBoundary(v) && !level.IsVertexNonManifold(v) &&
+                               level.GetVertexSharpness(v) <= 0.0f;
+                for (int i = 0; regular && i < valence; ++i) {
+                    regular = level.GetFaceVertices(faces[i]).size() == size &&
+                              level.GetEdgeSharpness(edges[i]) <= 0.0f;
+                }
+                isRegular[v] = regular;
             }
-            isRegular[v] = regular;
-        }
-    });
+        });
     return isRegular;
 }
 
@@ -69,27 +75,28 @@ void LimitSurface::Classify() {
         far_ext::FaceRing ring;
         std::vector<Index> points;
     };
-    tbb::enumerable_thread_specific<Scratch> scratchOfThread([&] {
-        return Scratch{far_ext::FaceRingGatherer(level, _channel), {}, {}};
-    });
-    tbb::parallel_for(tbb::blocked_range<Index>(0, level.GetNumFaces(), 1024), [&](auto const& range) {
-        auto& [gatherer, ring, points] = scratchOfThread.local();
-        for (Index face = range.begin(); face != range.end(); ++face) {
-            if (level.IsFaceHole(face)) continue;
-            auto const corners = level.GetFaceVertices(face);
-            bool const isPlain =
-                !isLinear && corners.size() == RegularSize(IsLoop()) &&
-                std::all_of(corners.begin(), corners.end(), [&](Index v) { return isRegularVertex[v]; }) &&
-                (_channel < 0 || level.DoesFaceFVarTopologyMatch(face, _channel));
-            if (isPlain) {
-                _kinds[face] = FaceKind::Plain;
-                continue;
-            }
-            gatherer.Gather(face, ring, points);
-            _ringOfFace[face] = _cache->Find(ring);
-            _kinds[face] = FaceKind::Ring;
-        }
-    });
+    tbb::enumerable_thread_specific<Scratch> scratchOfThread(
+        [&] { return Scratch{far_ext::FaceRingGatherer(level, _channel), {}, {}}; });
+    tbb::parallel_for(tbb::blocked_range<Index>(0, level.GetNumFaces(), 1024),
+                      [&](auto const& range) {
+                          auto& [gatherer, ring, points] = scratchOfThread.local();
+                          for (Index face = range.begin(); face != range.end(); ++face) {
+                              if (level.IsFaceHole(face)) continue;
+                              auto const corners = level.GetFaceVertices(face);
+                              bool const isPlain =
+                                  !isLinear && corners.size() == RegularSize(IsLoop()) &&
+                                  std::all_of(corners.begin(), corners.end(),
+                                              [&](Index v) { return isRegularVertex[v]; }) &&
+                                  (_channel < 0 || level.DoesFaceFVarTopologyMatch(face, _channel));
+                              if (isPlain) {
+                                  _kinds[face] = FaceKind::Plain;
+                                  continue;
+                              }
+                              gatherer.Gather(face, ring, points);
+                              _ringOfFace[face] = _cache->Find(ring);
+                              _kinds[face] = FaceKind::Ring;
+                          }
+                      });
 }
 
 namespace {
@@ -203,11 +210,13 @@ void FaceTree::BindWeights(Index face) {
     GatherPoints(face);
     _length = static_cast<int>(_points.size());
     AddNode(_surface._ringOfFace[face], _points.size());
-    for (size_t i = 0; i < _points.size(); ++i) _values[_nodes[0].points + i * _points.size() + i] = 1.0;
+    for (size_t i = 0; i < _points.size(); ++i)
+        _values[_nodes[0].points + i * _points.size() + i] = 1.0;
     Recentre(_nodes[0], nullptr);
 }
 
-/// Makes the node's points relative to its first one, which becomes the origin; a root has no parent's.
+/// Makes the node's points relative to its first one, which becomes the origin; a root has no
+/// parent's.
 void FaceTree::Recentre(Node& node, double const* parentOrigin) {
     double* const points = &_values[node.points];
     double* const origin = &_values[node.origin];
@@ -250,7 +259,8 @@ int FaceTree::GetChild(int parent, int child) {
     node.depth = isSubFace ? 0 : from.depth + 1;
     if (!isSubFace) {
         for (int k = 0; k < 2; ++k) {
-            node.domain.origin[k] = from.domain.origin[k] + from.domain.scale * step.domain.origin[k];
+            node.domain.origin[k] =
+                from.domain.origin[k] + from.domain.scale * step.domain.origin[k];
         }
         node.domain.scale = from.domain.scale * step.domain.scale;
     }
@@ -270,7 +280,8 @@ void FaceTree::MakeCoefficients(Node& node) {
     }
     for (int c = 0; c < _length; ++c) {
         double* const to = &_values[start + static_cast<size_t>(c * _numCoefficients)];
-        _isLoop ? BoxSplineToPower(control + c, _length, to) : BSplineToPower(control + c, _length, to);
+        _isLoop ? BoxSplineToPower(control + c, _length, to)
+                : BSplineToPower(control + c, _length, to);
     }
     node.coefficients = start;
 }
@@ -302,14 +313,19 @@ std::array<double, 2> FaceTree::GetBounds(int index, int channel) const {
     return {origin + low, origin + high};
 }
 
-double const* FaceTree::GetOrigin(int node) const { return &_values[_nodes[node].origin]; }
+double const* FaceTree::GetOrigin(int node) const {
+    return &_values[_nodes[node].origin];
+}
 
 int GetChildAt(bool isLoop, double& s, double& t) {
     if (isLoop) {
         int child = 0;
-        if (s >= 0.5) child = 1;
-        else if (t >= 0.5) child = 2;
-        else if (s + t > 0.5) child = 3;
+        if (s >= 0.5)
+            child = 1;
+        else if (t >= 0.5)
+            child = 2;
+        else if (s + t > 0.5)
+            child = 3;
         s = child == 3 ? 1.0 - 2.0 * s : 2.0 * s - (child == 1);
         t = child == 3 ? 1.0 - 2.0 * t : 2.0 * t - (child == 2);
         return child;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -51,8 +52,8 @@ private:
     std::vector<RingNode const*> _ringOfFace;  // null for plain patches
 };
 
-/// Which of a face's four children holds (s,t), as OpenSubdiv numbers them: one per corner (Loop: and the
-/// flipped triangle in the middle). (s,t) become coordinates of that child.
+/// Which of a face's four children holds (s,t), as OpenSubdiv numbers them: one per corner (Loop:
+/// and the flipped triangle in the middle). (s,t) become coordinates of that child.
 int GetChildAt(bool isLoop, double& s, double& t);
 
 /// One polynomial piece of a face's limit surface with a point in it.
@@ -100,8 +101,8 @@ public:
     /// Makes `face` (with HasLimit) the current one.
     void Bind(Index face);
 
-    /// Makes `face` the current one with weights for values: channel c is the weight of the vertex (or
-    /// fvar value) that GetPoints names at c, and there are as many channels as points.
+    /// Makes `face` the current one with weights for values: channel c is the weight of the vertex
+    /// (or fvar value) that GetPoints names at c, and there are as many channels as points.
     void BindWeights(Index face);
     std::vector<Index> const& GetPoints() const { return _points; }
 
@@ -111,8 +112,8 @@ public:
     /// Sorts samples of one domain into pieces and calls visit(PatchRun const&) for each. Samples
     /// nearer than 2^-maxDepth to an irregular corner are handed to visitNear(sample index).
     template <class Visit, class VisitNear>
-    void ForEachPiece(int domain, std::span<double const> s, std::span<double const> t, int maxDepth,
-                      Visit visit, VisitNear visitNear);
+    void ForEachPiece(int domain, std::span<double const> s, std::span<double const> t,
+                      int maxDepth, Visit visit, VisitNear visitNear);
 
     /// Nodes, for searches that prune (the UV inversion). The root of a domain:
     int GetRoot(int domain);
@@ -135,11 +136,11 @@ private:
         RingNode const* ring = nullptr;  // null: a plain patch
         size_t points = 0;               // into _values
         size_t numPoints = 0;
-        size_t origin = 0;               // into _values
-        size_t coefficients = 0;         // into _values; 0 until made
-        int firstChild = -1;             // into _children; -1 until made
+        size_t origin = 0;        // into _values
+        size_t coefficients = 0;  // into _values; 0 until made
+        int firstChild = -1;      // into _children; -1 until made
         int depth = 0;
-        far_ext::SubDomain domain;       // of the domain it belongs to
+        far_ext::SubDomain domain;  // of the domain it belongs to
     };
 
     void GatherPoints(Index face);

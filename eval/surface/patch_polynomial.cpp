@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/surface/patch_polynomial.h"
 
 #include <cmath>
@@ -71,7 +72,8 @@ BoxMatrix MakeBoxMatrix() {
             double yPower = 1.0;
             for (int b = 0; b <= 4; ++b, yPower *= y) {
                 double xPower = 1.0;
-                for (int a = 0; a + b <= 4; ++a, xPower *= x) powers(row, column++) = xPower * yPower;
+                for (int a = 0; a + b <= 4; ++a, xPower *= x)
+                    powers(row, column++) = xPower * yPower;
             }
         }
     }
@@ -112,7 +114,8 @@ void BoxSplineToPower(double const* points, int stride, double* coefficients) {
 }
 
 std::array<double, 6> EvaluateQuadPolynomial(double const* c, double x, double y) {
-    double value[4], first[4], second[4];  // per power of y: the polynomial in x and its derivatives
+    double value[4], first[4],
+        second[4];  // per power of y: the polynomial in x and its derivatives
     for (int j = 0; j < 4; ++j, c += 4) {
         value[j] = ((c[3] * x + c[2]) * x + c[1]) * x + c[0];
         first[j] = (3 * c[3] * x + 2 * c[2]) * x + c[1];
@@ -120,8 +123,8 @@ std::array<double, 6> EvaluateQuadPolynomial(double const* c, double x, double y
     }
     auto const cubic = [&](double const* p) { return ((p[3] * y + p[2]) * y + p[1]) * y + p[0]; };
     auto const slope = [&](double const* p) { return (3 * p[3] * y + 2 * p[2]) * y + p[1]; };
-    return {cubic(value), cubic(first), slope(value), cubic(second), slope(first),
-            6 * value[3] * y + 2 * value[2]};
+    return {cubic(value),  cubic(first), slope(value),
+            cubic(second), slope(first), 6 * value[3] * y + 2 * value[2]};
 }
 
 std::array<double, 6> EvaluateTrianglePolynomial(double const* c, double x, double y) {

@@ -1,10 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/surface/refined_faces.h"
 
 #include <algorithm>
 
 namespace limn::eval {
 
-RefinedFaces::RefinedFaces(LimitSurface const& base, int levels) : _levels(levels), _isLoop(base.IsLoop()) {
+RefinedFaces::RefinedFaces(LimitSurface const& base, int levels)
+    : _levels(levels), _isLoop(base.IsLoop()) {
     Index next = 0;
     for (Index face = 0; face < base.GetNumFaces(); ++face) {
         int const numDomains = base.GetNumDomains(face);
@@ -29,10 +31,13 @@ RefinedFaces::Place RefinedFaces::Find(Index face, int domain, double s, double 
     return place;
 }
 
-void RefinedFaces::FindSorted(Index face, int domain, std::span<double const> s, std::span<double const> t, std::vector<Sample>& samples) const {
+void RefinedFaces::FindSorted(Index face, int domain, std::span<double const> s,
+                              std::span<double const> t, std::vector<Sample>& samples) const {
     samples.clear();
     for (size_t i = 0; i < s.size(); ++i) samples.push_back({Find(face, domain, s[i], t[i]), i});
-    std::sort(samples.begin(), samples.end(), [](Sample const& a, Sample const& b) { return a.at.face != b.at.face ? a.at.face < b.at.face : a.index < b.index; });
+    std::sort(samples.begin(), samples.end(), [](Sample const& a, Sample const& b) {
+        return a.at.face != b.at.face ? a.at.face < b.at.face : a.index < b.index;
+    });
 }
 
 }  // namespace limn::eval

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -9,12 +10,25 @@ enum class Quantity { Position, Normal, Curvature, Direction, Tangents };
 
 /// Channels of a batch, in planes of `stride` floats.
 enum SurfaceChannel {
-    kPositionX, kPositionY, kPositionZ,     ///< all quantities
-    kNormalX, kNormalY, kNormalZ,           ///< Normal
-    kMean, kGaussian, kK1, kK2,             ///< Curvature
-    kDirectionX, kDirectionY, kDirectionZ,  ///< Direction: of k1
-    kTangentSX, kTangentSY, kTangentSZ,     ///< Tangents: dP/ds, dP/dt of the domain
-    kTangentTX, kTangentTY, kTangentTZ
+    kPositionX,
+    kPositionY,
+    kPositionZ,  ///< all quantities
+    kNormalX,
+    kNormalY,
+    kNormalZ,  ///< Normal
+    kMean,
+    kGaussian,
+    kK1,
+    kK2,  ///< Curvature
+    kDirectionX,
+    kDirectionY,
+    kDirectionZ,  ///< Direction: of k1
+    kTangentSX,
+    kTangentSY,
+    kTangentSZ,  ///< Tangents: dP/ds, dP/dt of the domain
+    kTangentTX,
+    kTangentTY,
+    kTangentTZ
 };
 
 /// Number of channels of a quantity.
@@ -27,8 +41,9 @@ constexpr int GetNumChannels(Quantity quantity) {
 /// readable and writable up to the next multiple of kSurfaceLanes.
 inline constexpr int kSurfaceLanes = 16;
 
-/// Real is float, or double where float would lose the second derivatives' digits: in pieces deep at an
-/// extraordinary vertex, where they shrink against the first ones, and on triangles' quartics.
+/// Real is float, or double where float would lose the second derivatives' digits: in pieces deep
+/// at an extraordinary vertex, where they shrink against the first ones, and on triangles'
+/// quartics.
 template <class Real>
 struct SurfaceBatch {
     Real const* coefficients;  ///< [3][16] (Loop: [3][15]), see patch_polynomial.h

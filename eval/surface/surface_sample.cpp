@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/surface/surface_sample.h"
 
 #include <algorithm>
@@ -13,8 +14,9 @@ namespace {
 
 std::array<double, 6> EvaluatePolynomial(FaceTree const& tree, PatchPoint const& at, int channel) {
     double const* const c = at.coefficients + channel * tree.GetNumCoefficients();
-    return tree.GetNumCoefficients() == kQuadCoefficients ? EvaluateQuadPolynomial(c, at.x, at.y)
-                                                          : EvaluateTrianglePolynomial(c, at.x, at.y);
+    return tree.GetNumCoefficients() == kQuadCoefficients
+               ? EvaluateQuadPolynomial(c, at.x, at.y)
+               : EvaluateTrianglePolynomial(c, at.x, at.y);
 }
 
 SurfaceDerivatives Evaluate(FaceTree const& tree, PatchPoint const& at) {
@@ -64,7 +66,8 @@ Curvature ComputeCurvature(Eigen::Vector3d const& ds, Eigen::Vector3d const& dt,
     if (D > 1e-5 * std::max(std::abs(W11), std::abs(W22))) {
         // Half of the angle with cosine c and sine s, by its larger part first; no libm.
         double const c = half / D, s = W12 / D;
-        double const large = std::sqrt(0.5 * (1.0 + std::abs(c))), small = 0.5 * std::abs(s) / large;
+        double const large = std::sqrt(0.5 * (1.0 + std::abs(c))),
+                     small = 0.5 * std::abs(s) / large;
         double const along = c >= 0.0 ? large : small, across = c >= 0.0 ? small : large;
         curvature.direction = along * a1 + (s < 0.0 ? -across : across) * a2;
     }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -30,8 +31,8 @@ struct SurfaceDerivatives {
     Eigen::Vector3d position, ds, dt, dss, dst, dtt;
 };
 
-/// Evaluates the tree's first three channels as they are: nothing is moved away from an irregular corner
-/// but what is nearer to it than doubles can tell.
+/// Evaluates the tree's first three channels as they are: nothing is moved away from an irregular
+/// corner but what is nearer to it than doubles can tell.
 SurfaceDerivatives EvaluateDerivatives(FaceTree& tree, int domain, double s, double t);
 
 /// Curvature from derivatives; the unit normal is ds x dt.
@@ -41,14 +42,16 @@ Curvature ComputeCurvature(Eigen::Vector3d const& ds, Eigen::Vector3d const& dt,
                            Eigen::Vector3d const& dss, Eigen::Vector3d const& dst,
                            Eigen::Vector3d const& dtt, double orientation);
 
-/// True if the tangents span a plane: neither is zero, and the sine of their angle is above a bound.
-/// Rounding leaves about 1e-15 of each product in their cross product; below 1e-12 it says nothing.
+/// True if the tangents span a plane: neither is zero, and the sine of their angle is above a
+/// bound. Rounding leaves about 1e-15 of each product in their cross product; below 1e-12 it says
+/// nothing.
 bool HasTangentPlane(SurfaceDerivatives const& derivatives, double leastSine = 1e-12);
 
 /// The sample that derivatives make. \pre HasTangentPlane
 SurfaceSample MakeSample(SurfaceDerivatives const& derivatives, double orientation);
 
-/// Value and derivatives of one channel of a piece: P, Ps, Pt, Pss, Pst, Ptt by (s,t) of the domain.
+/// Value and derivatives of one channel of a piece: P, Ps, Pt, Pss, Pst, Ptt by (s,t) of the
+/// domain.
 std::array<double, 6> EvaluateDerivatives(FaceTree const& tree, PatchPoint const& at, int channel);
 
 /// Evaluates one place of the tree's current face; its first three channels are the position.
@@ -56,7 +59,9 @@ std::array<double, 6> EvaluateDerivatives(FaceTree const& tree, PatchPoint const
 /// \param orientation  +1, or -1 to turn the normal round
 SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t, double orientation);
 
-/// One channel's value at a place, in double; nearer than 2^-maxDepth to an irregular corner, at that distance.
-double EvaluateChannel(FaceTree& tree, int domain, double s, double t, int channel, int maxDepth = FaceTree::kLimitDepth);
+/// One channel's value at a place, in double; nearer than 2^-maxDepth to an irregular corner, at
+/// that distance.
+double EvaluateChannel(FaceTree& tree, int domain, double s, double t, int channel,
+                       int maxDepth = FaceTree::kLimitDepth);
 
 }  // namespace limn::eval

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/surface/surface_sampler.h"
 
 #include <algorithm>
@@ -14,7 +15,8 @@ SurfaceSampler::SurfaceSampler(FaceTree& tree, Quantity quantity, float orientat
       _planes(static_cast<size_t>(_numChannels + 3) * kStride),
       _degenerate(kStride) {
     auto const prepare = [&](auto& lanes) {
-        lanes.coefficients.resize(static_cast<size_t>(tree.GetLength() * tree.GetNumCoefficients()));
+        lanes.coefficients.resize(
+            static_cast<size_t>(tree.GetLength() * tree.GetNumCoefficients()));
         lanes.x.resize(kStride);
         lanes.y.resize(kStride);
     };
@@ -22,9 +24,9 @@ SurfaceSampler::SurfaceSampler(FaceTree& tree, Quantity quantity, float orientat
     prepare(_double);
 }
 
-/// From level to level second derivatives shrink against the first ones, by up to 4 times at valence 3: what
-/// is left of them in float is enough for 1e-6 only down to depth 1. On triangles the quartic's longer sums
-/// cost a factor of 2 everywhere.
+/// From level to level second derivatives shrink against the first ones, by up to 4 times at
+/// valence 3: what is left of them in float is enough for 1e-6 only down to depth 1. On triangles
+/// the quartic's longer sums cost a factor of 2 everywhere.
 bool SurfaceSampler::NeedsDouble(PatchPoint const& patch) const {
     bool const isTriangle = _tree.GetNumCoefficients() == 15;
     return NeedsCurvature() && (isTriangle || std::abs(patch.scale) >= 4.0);
@@ -41,14 +43,16 @@ void SurfaceSampler::LoadCoefficients(PatchPoint const& patch, Lanes<Real>& lane
     for (int c = 0; c < _tree.GetLength(); ++c) {
         for (int i = 0; i < n; ++i) {
             double const origin = i == 0 ? patch.origin[c] : 0.0;
-            lanes.coefficients[c * n + i] = static_cast<Real>(origin + patch.coefficients[c * n + i]);
+            lanes.coefficients[c * n + i] =
+                static_cast<Real>(origin + patch.coefficients[c * n + i]);
         }
     }
 }
 
 template <class Real>
-void SurfaceSampler::EvaluateBlock(Lanes<Real>& lanes, PatchRun const& run, size_t first, size_t count, int domain,
-                                   std::span<double const> s, std::span<double const> t) {
+void SurfaceSampler::EvaluateBlock(Lanes<Real>& lanes, PatchRun const& run, size_t first,
+                                   size_t count, int domain, std::span<double const> s,
+                                   std::span<double const> t) {
     double const centre = _tree.GetCentre();
     for (size_t i = 0; i < count; ++i) {
         lanes.x[i] = static_cast<Real>(run.s[first + i] - centre);
@@ -99,10 +103,10 @@ void SurfaceSampler::EvaluateBlock(Lanes<Real>& lanes, PatchRun const& run, size
 
 template void SurfaceSampler::LoadCoefficients(PatchPoint const&, Lanes<float>&);
 template void SurfaceSampler::LoadCoefficients(PatchPoint const&, Lanes<double>&);
-template void SurfaceSampler::EvaluateBlock(Lanes<float>&, PatchRun const&, size_t, size_t, int, std::span<double const>,
-                                            std::span<double const>);
-template void SurfaceSampler::EvaluateBlock(Lanes<double>&, PatchRun const&, size_t, size_t, int, std::span<double const>,
-                                            std::span<double const>);
+template void SurfaceSampler::EvaluateBlock(Lanes<float>&, PatchRun const&, size_t, size_t, int,
+                                            std::span<double const>, std::span<double const>);
+template void SurfaceSampler::EvaluateBlock(Lanes<double>&, PatchRun const&, size_t, size_t, int,
+                                            std::span<double const>, std::span<double const>);
 
 void SurfaceSampler::EvaluateExactly(int domain, double s, double t, size_t column) {
     SurfaceSample const sample = EvaluateSample(_tree, domain, s, t, _orientation);

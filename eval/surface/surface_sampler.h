@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <span>
@@ -9,9 +10,9 @@
 
 namespace limn::eval {
 
-/// Evaluates many samples of one face through the batched kernels, in float, or in double where curvature
-/// needs it (deep pieces, triangles); the few that no batch can do (next to an irregular corner, without
-/// tangent plane) one by one.
+/// Evaluates many samples of one face through the batched kernels, in float, or in double where
+/// curvature needs it (deep pieces, triangles); the few that no batch can do (next to an irregular
+/// corner, without tangent plane) one by one.
 ///
 /// Channels  those of the quantity (SurfaceChannel), then the tree's channels from 3 on as values.
 /// Threads   one per thread, with its own tree
@@ -30,7 +31,8 @@ public:
         size_t moved = 0, degenerate = 0;
         std::vector<Place> movedPlaces;  ///< the first kMaxPlaces of them
     };
-    static constexpr size_t kMaxPlaces = 1 << 16;  // so many that which are kept does not depend on threads
+    static constexpr size_t kMaxPlaces =
+        1 << 16;  // so many that which are kept does not depend on threads
 
     void Bind(Index face);
 
@@ -57,8 +59,8 @@ private:
     void LoadCoefficients(PatchPoint const& patch, Lanes<Real>& lanes);
     /// Fills _planes with one block of a run; samples lie at x, y of the loaded piece.
     template <class Real>
-    void EvaluateBlock(Lanes<Real>& lanes, PatchRun const& run, size_t first, size_t count, int domain,
-                       std::span<double const> s, std::span<double const> t);
+    void EvaluateBlock(Lanes<Real>& lanes, PatchRun const& run, size_t first, size_t count,
+                       int domain, std::span<double const> s, std::span<double const> t);
     void EvaluateExactly(int domain, double s, double t, size_t column);
 
     FaceTree& _tree;
@@ -83,12 +85,16 @@ void SurfaceSampler::Evaluate(int domain, std::span<double const> s, std::span<d
         domain, s, t, depth,
         [&](PatchRun const& run) {
             bool const isDouble = NeedsDouble(run.patch);
-            if (isDouble) LoadCoefficients(run.patch, _double);
-            else LoadCoefficients(run.patch, _float);
+            if (isDouble)
+                LoadCoefficients(run.patch, _double);
+            else
+                LoadCoefficients(run.patch, _float);
             for (size_t first = 0; first < run.samples.size(); first += kBlock) {
                 size_t const count = std::min(kBlock, run.samples.size() - first);
-                if (isDouble) EvaluateBlock(_double, run, first, count, domain, s, t);
-                else EvaluateBlock(_float, run, first, count, domain, s, t);
+                if (isDouble)
+                    EvaluateBlock(_double, run, first, count, domain, s, t);
+                else
+                    EvaluateBlock(_float, run, first, count, domain, s, t);
                 visit(run.samples.subspan(first, count), _planes.data(), kStride);
             }
         },

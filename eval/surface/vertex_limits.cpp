@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/surface/vertex_limits.h"
 
 #include <tbb/blocked_range.h>
@@ -11,14 +12,16 @@ namespace limn::eval {
 
 namespace {
 
-/// The face that evaluates each vertex: one that is a plain patch where there is one, else the first.
+/// The face that evaluates each vertex: one that is a plain patch where there is one, else the
+/// first.
 std::vector<Index> ChooseFaces(LimitSurface const& surface, Far::TopologyLevel const& level) {
     std::vector<Index> chosen(static_cast<size_t>(level.GetNumVertices()), -1);
     for (Index face = 0; face < surface.GetNumFaces(); ++face) {
         if (!surface.HasLimit(face)) continue;
         for (Index vertex : level.GetFaceVertices(face)) {
             Index& known = chosen[static_cast<size_t>(vertex)];
-            if (known < 0 || (surface.IsPlainPatch(face) && !surface.IsPlainPatch(known))) known = face;
+            if (known < 0 || (surface.IsPlainPatch(face) && !surface.IsPlainPatch(known)))
+                known = face;
         }
     }
     return chosen;
@@ -26,33 +29,36 @@ std::vector<Index> ChooseFaces(LimitSurface const& surface, Far::TopologyLevel c
 
 }  // namespace
 
-VertexLimits EvaluateVertexLimits(LimitSurface const& surface, std::span<double const> values, int length, int maxDepth,
-                                  std::function<void()> const& onBlock) {
+VertexLimits EvaluateVertexLimits(LimitSurface const& surface, std::span<double const> values,
+                                  int length, int maxDepth, std::function<void()> const& onBlock) {
     Far::TopologyLevel const level = surface.GetRefiner().GetLevel(0);
     std::vector<Index> const chosen = ChooseFaces(surface, level);
     VertexLimits limits{{values.begin(), values.end()}, std::vector<char>(chosen.size(), 0)};
-    tbb::enumerable_thread_specific<FaceTree> trees([&] { return FaceTree(surface, values, length); });
-    tbb::parallel_for(tbb::blocked_range<Index>(0, surface.GetNumFaces(), 256), [&](auto const& range) {
-        if (onBlock) onBlock();
-        FaceTree& tree = trees.local();
-        for (Index face = range.begin(); face != range.end(); ++face) {
-            if (!surface.HasLimit(face)) continue;
-            auto const vertices = level.GetFaceVertices(face);
-            bool isBound = false;
-            for (int corner = 0; corner < vertices.size(); ++corner) {
-                size_t const vertex = static_cast<size_t>(vertices[corner]);
-                if (chosen[vertex] != face) continue;
-                if (!isBound) tree.Bind(face);
-                isBound = true;
-                auto const place = GetCornerPlace(surface, face, corner);
-                for (int c = 0; c < length; ++c) {
-                    limits.values[vertex * static_cast<size_t>(length) + static_cast<size_t>(c)] =
-                        EvaluateChannel(tree, place.domain, place.s, place.t, c, maxDepth);
+    tbb::enumerable_thread_specific<FaceTree> trees(
+        [&] { return FaceTree(surface, values, length); });
+    tbb::parallel_for(
+        tbb::blocked_range<Index>(0, surface.GetNumFaces(), 256), [&](auto const& range) {
+            if (onBlock) onBlock();
+            FaceTree& tree = trees.local();
+            for (Index face = range.begin(); face != range.end(); ++face) {
+                if (!surface.HasLimit(face)) continue;
+                auto const vertices = level.GetFaceVertices(face);
+                bool isBound = false;
+                for (int corner = 0; corner < vertices.size(); ++corner) {
+                    size_t const vertex = static_cast<size_t>(vertices[corner]);
+                    if (chosen[vertex] != face) continue;
+                    if (!isBound) tree.Bind(face);
+                    isBound = true;
+                    auto const place = GetCornerPlace(surface, face, corner);
+                    for (int c = 0; c < length; ++c) {
+                        limits
+                            .values[vertex * static_cast<size_t>(length) + static_cast<size_t>(c)] =
+                            EvaluateChannel(tree, place.domain, place.s, place.t, c, maxDepth);
+                    }
+                    limits.hasLimit[vertex] = 1;
                 }
-                limits.hasLimit[vertex] = 1;
             }
-        }
-    });
+        });
     return limits;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/cascade/bisection.h"
 
 #include <algorithm>
@@ -12,7 +13,9 @@ namespace {
 /// Edges of triangles, numbered by first appearance.
 class EdgeNumbers {
 public:
-    Index Get(Index a, Index b) { return _numbers.try_emplace(Key(a, b), static_cast<Index>(_numbers.size())).first->second; }
+    Index Get(Index a, Index b) {
+        return _numbers.try_emplace(Key(a, b), static_cast<Index>(_numbers.size())).first->second;
+    }
     Index Find(Index a, Index b) const {
         auto const found = _numbers.find(Key(a, b));
         return found == _numbers.end() ? -1 : found->second;
@@ -21,7 +24,8 @@ public:
 
 private:
     static std::uint64_t Key(Index a, Index b) {
-        return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint64_t>(std::max(a, b));
+        return static_cast<std::uint64_t>(std::min(a, b)) << 32 |
+               static_cast<std::uint64_t>(std::max(a, b));
     }
     std::unordered_map<std::uint64_t, Index> _numbers;
 };
@@ -35,7 +39,8 @@ int FindLongestEdge(Index const* face, std::span<double const> positions) {
         std::array<Index, 2> const pair{std::min(a, b), std::max(a, b)};
         double square = 0.0;
         for (size_t c = 0; c < 3; ++c) {
-            double const d = positions[3 * static_cast<size_t>(pair[1]) + c] - positions[3 * static_cast<size_t>(pair[0]) + c];
+            double const d = positions[3 * static_cast<size_t>(pair[1]) + c] -
+                             positions[3 * static_cast<size_t>(pair[0]) + c];
             square += d * d;
         }
         if (square < best || (square == best && bestPair < pair)) continue;
@@ -62,10 +67,11 @@ struct Halves {
     std::vector<std::array<Index, 2>>& fvarParents;
     EdgeNumbers fvarEdges{};  // that are cut
 
-    /// Cuts a triangle whose refinement edge is (face[0], face[1]), and its halves. New triangles have their
-    /// refinement edge, opposite the newest vertex, first as well.
+    /// Cuts a triangle whose refinement edge is (face[0], face[1]), and its halves. New triangles
+    /// have their refinement edge, opposite the newest vertex, first as well.
     void Cut(std::array<Corner, 3> const& face, Index baseFace) {
-        Index const edge = edges.Find(face[0].vertex, face[1].vertex), middle = edge < 0 ? -1 : middles[edge];
+        Index const edge = edges.Find(face[0].vertex, face[1].vertex),
+                    middle = edge < 0 ? -1 : middles[edge];
         if (middle < 0) {
             for (Corner const& corner : face) {
                 faces.push_back(corner.vertex);
@@ -96,7 +102,8 @@ Bisection::Bisection(Index numVertices, std::vector<Index> faces, std::span<doub
     _mesh.creases = std::move(creases);
     _mesh.corners = std::move(corners);
     for (Index face = 0; face < _mesh.GetNumFaces(); ++face) {
-        _refinementEdges.push_back(FindLongestEdge(&_mesh.faces[3 * static_cast<size_t>(face)], positions));
+        _refinementEdges.push_back(
+            FindLongestEdge(&_mesh.faces[3 * static_cast<size_t>(face)], positions));
         _baseFaces.push_back(face);
     }
 }
@@ -139,7 +146,13 @@ CascadeMesh const& Bisection::Refine() {
     _fvarParents.clear();
     std::vector<Index> const coarseValues = std::move(_fvarValues);
     _fvarValues.clear();
-    Halves halves{middles, edges, _mesh.faces, _baseFaces, coarseValues.empty() ? nullptr : &_fvarValues, _numFVarValues, _fvarParents};
+    Halves halves{middles,
+                  edges,
+                  _mesh.faces,
+                  _baseFaces,
+                  coarseValues.empty() ? nullptr : &_fvarValues,
+                  _numFVarValues,
+                  _fvarParents};
     for (size_t face = 0; face < _refinementEdges.size(); ++face) {
         size_t const k = static_cast<size_t>(_refinementEdges[face]);
         auto const corner = [&](size_t i) -> Corner {

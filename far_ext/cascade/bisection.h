@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -8,11 +9,13 @@
 
 namespace limn::far_ext {
 
-/// Bisection of triangles: every pass cuts each triangle at its refinement edge, and its halves again where that of a
-/// neighbour runs along theirs. Refinement edges are the longest of the first mesh (of equal ones that with the smallest
-/// pair of vertices), afterwards the edge opposite the newest vertex. Two passes about quarter the triangles.
+/// Bisection of triangles: every pass cuts each triangle at its refinement edge, and its halves
+/// again where that of a neighbour runs along theirs. Refinement edges are the longest of the first
+/// mesh (of equal ones that with the smallest pair of vertices), afterwards the edge opposite the
+/// newest vertex. Two passes about quarter the triangles.
 ///
-/// Order   vertices stay; new ones follow in the order of the edges, numbered by first appearance along the faces.
+/// Order   vertices stay; new ones follow in the order of the edges, numbered by first appearance
+///         along the faces.
 /// Source  [Diewald02] Sec. 7, Fig. 6
 class Bisection {
 public:
@@ -24,7 +27,8 @@ public:
     /// One pass. \return the finer mesh, with parents in the one before
     CascadeMesh const& Refine();
 
-    /// Carries a face-varying channel along: values stay, new ones follow. To be called before the first pass.
+    /// Carries a face-varying channel along: values stay, new ones follow. To be called before the
+    /// first pass.
     ///
     /// \param values  per corner of the triangles
     void SetFVarChannel(Index numValues, std::vector<Index> values);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/cascade/cascade_level.h"
 
 #include <algorithm>
@@ -18,9 +19,11 @@ namespace {
 enum class RowKind : char { Closed, Open, Crease, Fixed };
 
 [[noreturn]] void ThrowNoDisc(Index vertex) {
-    throw Error(ErrorCode::BadMesh, fmt::format("the faces at vertex {} are no disc of one orientation; edges must have 1 or 2 "
-                                                "faces that run through them in opposite directions",
-                                                vertex));
+    throw Error(
+        ErrorCode::BadMesh,
+        fmt::format("the faces at vertex {} are no disc of one orientation; edges must have 1 or 2 "
+                    "faces that run through them in opposite directions",
+                    vertex));
 }
 
 /// Rings of all vertices in the public order.
@@ -30,7 +33,8 @@ struct Rings {
     std::vector<RowKind> kinds;
 };
 
-/// A face's corner at a vertex: next and previous vertex of the face, and the opposite one of a quad.
+/// A face's corner at a vertex: next and previous vertex of the face, and the opposite one of a
+/// quad.
 struct Corner {
     Index next, previous, opposite;
 };
@@ -39,7 +43,8 @@ struct Corner {
 /// \return whether the ring is closed
 bool OrderCorners(Index vertex, std::span<Corner> corners) {
     auto const first = std::find_if(corners.begin(), corners.end(), [&](Corner const& c) {
-        return std::none_of(corners.begin(), corners.end(), [&](Corner const& d) { return d.previous == c.next; });
+        return std::none_of(corners.begin(), corners.end(),
+                            [&](Corner const& d) { return d.previous == c.next; });
     });
     bool const isClosed = first == corners.end();
     if (!isClosed) std::swap(corners.front(), *first);
@@ -47,18 +52,21 @@ bool OrderCorners(Index vertex, std::span<Corner> corners) {
         if (corners[k].next == corners[k].previous) ThrowNoDisc(vertex);
         if (k + 1 == corners.size()) break;
         auto const from = corners.begin() + static_cast<std::ptrdiff_t>(k) + 1;
-        auto const found = std::find_if(from, corners.end(), [&](Corner const& c) { return c.next == corners[k].previous; });
+        auto const found = std::find_if(
+            from, corners.end(), [&](Corner const& c) { return c.next == corners[k].previous; });
         if (found == corners.end()) ThrowNoDisc(vertex);
         std::swap(*from, *found);
     }
     Index const last = corners.back().previous;
-    bool const returns = std::any_of(corners.begin(), corners.end(), [&](Corner const& c) { return c.next == last; });
+    bool const returns = std::any_of(corners.begin(), corners.end(),
+                                     [&](Corner const& c) { return c.next == last; });
     if (isClosed ? last != corners.front().next : returns) ThrowNoDisc(vertex);
     return isClosed;
 }
 
 Rings FindRings(CascadeMesh const& mesh, BoundaryRule rule) {
-    size_t const numVertices = static_cast<size_t>(mesh.numVertices), n = static_cast<size_t>(mesh.faceSize);
+    size_t const numVertices = static_cast<size_t>(mesh.numVertices),
+                 n = static_cast<size_t>(mesh.faceSize);
     LargeArray<int> begins(numVertices + 1, 0);
     for (Index vertex : mesh.faces) ++begins[static_cast<size_t>(vertex) + 1];
     for (size_t i = 0; i < numVertices; ++i) begins[i + 1] += begins[i];
@@ -80,7 +88,8 @@ Rings FindRings(CascadeMesh const& mesh, BoundaryRule rule) {
     rings.offsets.reserve(numVertices + 1);
     rings.neighbours.reserve(corners.size() * (n - 2) + numVertices / 8);
     for (size_t i = 0; i < numVertices; ++i) {
-        std::span<Corner> const own(corners.data() + begins[i], static_cast<size_t>(begins[i + 1] - begins[i]));
+        std::span<Corner> const own(corners.data() + begins[i],
+                                    static_cast<size_t>(begins[i + 1] - begins[i]));
         if (own.empty()) {
             rings.kinds[i] = RowKind::Fixed;
         } else {
@@ -90,21 +99,25 @@ Rings FindRings(CascadeMesh const& mesh, BoundaryRule rule) {
                 if (n == 4) rings.neighbours.push_back(corner.opposite);
             }
             if (!isClosed) rings.neighbours.push_back(own.back().previous);
-            rings.kinds[i] = isClosed ? RowKind::Closed : rule == BoundaryRule::Fixed ? RowKind::Fixed : RowKind::Open;
+            rings.kinds[i] = isClosed                      ? RowKind::Closed
+                             : rule == BoundaryRule::Fixed ? RowKind::Fixed
+                                                           : RowKind::Open;
         }
         if (rings.neighbours.size() > static_cast<size_t>(std::numeric_limits<int>::max())) {
-            throw Error(ErrorCode::TooLarge, "the cascade's level has more than 2^31 neighbours; use fewer levels");
+            throw Error(ErrorCode::TooLarge,
+                        "the cascade's level has more than 2^31 neighbours; use fewer levels");
         }
         rings.offsets.push_back(static_cast<int>(rings.neighbours.size()));
     }
     return rings;
 }
 
-/// Marks rows on creases. A crease that ends within the surface leaves its end smooth; where creases meet, or meet a
-/// boundary, the vertex stays.
+/// Marks rows on creases. A crease that ends within the surface leaves its end smooth; where
+/// creases meet, or meet a boundary, the vertex stays.
 /// \return per vertex its two neighbours along a crease
 std::vector<std::array<Index, 2>> SplitAtCreases(CascadeMesh const& mesh, Rings& rings) {
-    std::vector<std::array<Index, 2>> along(mesh.creases.empty() ? 0 : static_cast<size_t>(mesh.numVertices), {-1, -1});
+    std::vector<std::array<Index, 2>> along(
+        mesh.creases.empty() ? 0 : static_cast<size_t>(mesh.numVertices), {-1, -1});
     std::vector<int> counts(along.size(), 0);
     for (auto const& edge : mesh.creases) {
         for (size_t end = 0; end < 2; ++end) {
@@ -115,7 +128,8 @@ std::vector<std::array<Index, 2>> SplitAtCreases(CascadeMesh const& mesh, Rings&
     for (size_t i = 0; i < counts.size(); ++i) {
         RowKind& kind = rings.kinds[i];
         if (kind == RowKind::Open && counts[i] > 0) kind = RowKind::Fixed;
-        if (kind == RowKind::Closed && counts[i] > 1) kind = counts[i] == 2 ? RowKind::Crease : RowKind::Fixed;
+        if (kind == RowKind::Closed && counts[i] > 1)
+            kind = counts[i] == 2 ? RowKind::Crease : RowKind::Fixed;
     }
     for (Index vertex : mesh.corners) rings.kinds[vertex] = RowKind::Fixed;
     return along;
@@ -143,7 +157,8 @@ LargeArray<Index> OrderBreadthFirst(Rings const& rings) {
 
 LargeArray<Index> Invert(std::span<Index const> vertices) {
     LargeArray<Index> rows(vertices.size());
-    for (size_t row = 0; row < vertices.size(); ++row) rows[vertices[row]] = static_cast<Index>(row);
+    for (size_t row = 0; row < vertices.size(); ++row)
+        rows[vertices[row]] = static_cast<Index>(row);
     return rows;
 }
 
@@ -160,7 +175,8 @@ Index FindBandwidth(CascadeLevel const& level) {
 
 }  // namespace
 
-CascadeLevel BuildCascadeLevel(CascadeMesh const& mesh, std::span<Index const> coarseVertices, BoundaryRule rule) {
+CascadeLevel BuildCascadeLevel(CascadeMesh const& mesh, std::span<Index const> coarseVertices,
+                               BoundaryRule rule) {
     Rings rings = FindRings(mesh, rule);
     auto const along = SplitAtCreases(mesh, rings);
     auto const order = OrderBreadthFirst(rings);
@@ -187,13 +203,16 @@ CascadeLevel BuildCascadeLevel(CascadeMesh const& mesh, std::span<Index const> c
     for (Index row = 0; row < level.GetNumRows(); ++row) {
         Index const vertex = level.vertices[row];
         if (row < level.numSurface) {
-            for (int k = rings.offsets[vertex]; k < rings.offsets[vertex + 1]; ++k) level.neighbours.push_back(rows[rings.neighbours[k]]);
+            for (int k = rings.offsets[vertex]; k < rings.offsets[vertex + 1]; ++k)
+                level.neighbours.push_back(rows[rings.neighbours[k]]);
         } else if (row < level.numUnknowns) {
             for (Index other : along[vertex]) level.neighbours.push_back(rows[other]);
         }
-        if (row < level.numUnknowns) level.offsets.push_back(static_cast<int>(level.neighbours.size()));
+        if (row < level.numUnknowns)
+            level.offsets.push_back(static_cast<int>(level.neighbours.size()));
         for (int k = mesh.parentOffsets[vertex]; k < mesh.parentOffsets[vertex + 1]; ++k) {
-            level.parents.push_back(coarseRows.empty() ? mesh.parents[k] : coarseRows[mesh.parents[k]]);
+            level.parents.push_back(coarseRows.empty() ? mesh.parents[k]
+                                                       : coarseRows[mesh.parents[k]]);
         }
         level.parentOffsets.push_back(static_cast<int>(level.parents.size()));
     }
@@ -213,14 +232,18 @@ CascadeMesh MakeCascadeMesh(Far::TopologyRefiner const& refiner, int level) {
     }
     enum : char { FromVertex, FromEdge, FromFace };
     std::vector<std::pair<char, Index>> sources(static_cast<size_t>(mesh.numVertices));
-    for (Index i = 0; i < coarse.GetNumVertices(); ++i) sources[coarse.GetVertexChildVertex(i)] = {FromVertex, i};
-    for (Index i = 0; i < coarse.GetNumEdges(); ++i) sources[coarse.GetEdgeChildVertex(i)] = {FromEdge, i};
-    for (Index i = 0; mesh.faceSize == 4 && i < coarse.GetNumFaces(); ++i) sources[coarse.GetFaceChildVertex(i)] = {FromFace, i};
+    for (Index i = 0; i < coarse.GetNumVertices(); ++i)
+        sources[coarse.GetVertexChildVertex(i)] = {FromVertex, i};
+    for (Index i = 0; i < coarse.GetNumEdges(); ++i)
+        sources[coarse.GetEdgeChildVertex(i)] = {FromEdge, i};
+    for (Index i = 0; mesh.faceSize == 4 && i < coarse.GetNumFaces(); ++i)
+        sources[coarse.GetFaceChildVertex(i)] = {FromFace, i};
     for (auto const& [kind, source] : sources) {
         if (kind == FromVertex) {
             mesh.parents.push_back(source);
         } else {
-            auto const vertices = kind == FromEdge ? coarse.GetEdgeVertices(source) : coarse.GetFaceVertices(source);
+            auto const vertices =
+                kind == FromEdge ? coarse.GetEdgeVertices(source) : coarse.GetFaceVertices(source);
             mesh.parents.insert(mesh.parents.end(), vertices.begin(), vertices.end());
         }
         mesh.parentOffsets.push_back(static_cast<int>(mesh.parents.size()));
@@ -231,7 +254,8 @@ CascadeMesh MakeCascadeMesh(Far::TopologyRefiner const& refiner, int level) {
         mesh.creases.push_back({ends[0], ends[1]});
     }
     for (Index vertex = 0; vertex < fine.GetNumVertices(); ++vertex) {
-        if (fine.GetVertexSharpness(vertex) > 0.0f && !fine.IsVertexBoundary(vertex)) mesh.corners.push_back(vertex);
+        if (fine.GetVertexSharpness(vertex) > 0.0f && !fine.IsVertexBoundary(vertex))
+            mesh.corners.push_back(vertex);
     }
     return mesh;
 }

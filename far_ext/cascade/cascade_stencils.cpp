@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/cascade/cascade_stencils.h"
 
 #include <limits>
@@ -8,9 +9,12 @@ namespace limn::far_ext {
 
 CascadeStencils::CascadeStencils(CascadeLevel const& level) {
     Index const numRows = level.GetNumRows();
-    size_t const numEntries = level.neighbours.size() + static_cast<size_t>(numRows) + static_cast<size_t>(level.numUnknowns);
-    if (numEntries > static_cast<size_t>(std::numeric_limits<int>::max()) || numRows > std::numeric_limits<int>::max() / 2) {
-        throw Error(ErrorCode::TooLarge, "a table of sweeps would have more than 2^31 entries; use fewer levels");
+    size_t const numEntries = level.neighbours.size() + static_cast<size_t>(numRows) +
+                              static_cast<size_t>(level.numUnknowns);
+    if (numEntries > static_cast<size_t>(std::numeric_limits<int>::max()) ||
+        numRows > std::numeric_limits<int>::max() / 2) {
+        throw Error(ErrorCode::TooLarge,
+                    "a table of sweeps would have more than 2^31 entries; use fewer levels");
     }
     _indices.reserve(numEntries);
     for (Index row = 0; row < numRows; ++row) {
@@ -26,8 +30,8 @@ CascadeStencils::CascadeStencils(CascadeLevel const& level) {
     _weights.assign(_indices.size(), 1.0f);  // what rows that stay have
 }
 
-void CascadeStencils::SetWeights(CascadeLevel const& level, std::span<float const> edges, std::span<float const> masses,
-                                 std::span<float const> scales) {
+void CascadeStencils::SetWeights(CascadeLevel const& level, std::span<float const> edges,
+                                 std::span<float const> masses, std::span<float const> scales) {
     for (Index row = 0; row < level.numUnknowns; ++row) {
         float* weight = &_weights[_offsets[row]];
         float& own = *weight++;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <span>
@@ -7,11 +8,11 @@
 
 namespace limn::far_ext {
 
-/// One damped Jacobi sweep X - theta D^-1 ((M + L) X - M X0) as a stencil table over [X; X0], that OpenSubdiv's
-/// evaluators run.
+/// One damped Jacobi sweep X - theta D^-1 ((M + L) X - M X0) as a stencil table over [X; X0], that
+/// OpenSubdiv's evaluators run.
 ///
-/// Shape   n rows over 2 n points, for the n rows of a level: X, then X0. An unknown's row is itself, its ring and
-///         its start value; that of a row that stays is itself.
+/// Shape   n rows over 2 n points, for the n rows of a level: X, then X0. An unknown's row is
+///         itself, its ring and its start value; that of a row that stays is itself.
 /// Source  [Diewald02] Sec. 7
 class CascadeStencils {
 public:
@@ -23,8 +24,8 @@ public:
     /// \param edges   -L_ij, per entry of CascadeLevel::neighbours
     /// \param masses  M_ii, per unknown
     /// \param scales  theta / D_ii, per unknown; 0 for one that nothing moves
-    void SetWeights(CascadeLevel const& level, std::span<float const> edges, std::span<float const> masses,
-                    std::span<float const> scales);
+    void SetWeights(CascadeLevel const& level, std::span<float const> edges,
+                    std::span<float const> masses, std::span<float const> scales);
 
     // Accessors of Far::StencilTable.
     Index GetNumStencils() const { return static_cast<Index>(_sizes.size()); }

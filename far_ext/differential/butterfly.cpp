@@ -1,11 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/differential/butterfly.h"
 
 #include <cmath>
 
 #include <fmt/format.h>
 
-#include "far_ext/error.h"
 #include "far_ext/differential/laplacian.h"
+#include "far_ext/error.h"
 
 namespace limn::far_ext {
 
@@ -47,7 +48,8 @@ private:
         for (Index end : _coarse.GetEdgeVertices(edge)) {
             row.Add(end, 9.0 / 16);
             for (Index other : _coarse.GetVertexEdges(end)) {
-                if (other != edge && _coarse.IsEdgeBoundary(other)) row.Add(GetOtherEnd(_coarse, other, end), -1.0 / 16);
+                if (other != edge && _coarse.IsEdgeBoundary(other))
+                    row.Add(GetOtherEnd(_coarse, other, end), -1.0 / 16);
             }
         }
     }
@@ -82,7 +84,8 @@ private:
     }
 
     static double RingWeight(int valence, int j) {
-        constexpr double kThree[] = {5.0 / 12, -1.0 / 12, -1.0 / 12}, kFour[] = {3.0 / 8, 0.0, -1.0 / 8, 0.0};
+        constexpr double kThree[] = {5.0 / 12, -1.0 / 12, -1.0 / 12},
+                         kFour[] = {3.0 / 8, 0.0, -1.0 / 8, 0.0};
         if (valence == 3) return kThree[j];
         if (valence == 4) return kFour[j];
         double const angle = 2.0 * kPi * j / valence;
@@ -94,7 +97,8 @@ private:
         for (Index vertex : _coarse.GetFaceVertices(face)) {
             if (vertex != ends[0] && vertex != ends[1]) return vertex;
         }
-        throw Error(ErrorCode::BadMesh, fmt::format("face {} repeats a vertex; a triangle has three", face));
+        throw Error(ErrorCode::BadMesh,
+                    fmt::format("face {} repeats a vertex; a triangle has three", face));
     }
 
     Level const& _coarse;
@@ -108,7 +112,9 @@ SparseRows BuildButterfly(Far::TopologyRefiner const& refiner, int level) {
     for (Index edge = 0; edge < coarse.GetNumEdges(); ++edge) {
         int const count = coarse.GetEdgeFaces(edge).size();
         if (count <= 2 && !coarse.IsEdgeNonManifold(edge)) continue;
-        throw Error(ErrorCode::BadMesh, fmt::format("edge {} has {} faces; Butterfly needs 1 or 2, wound alike", edge, count));
+        throw Error(
+            ErrorCode::BadMesh,
+            fmt::format("edge {} has {} faces; Butterfly needs 1 or 2, wound alike", edge, count));
     }
     // OpenSubdiv's order of a Loop refinement: vertices first, then edges.
     SparseRows rows;

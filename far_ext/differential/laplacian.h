@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <span>
@@ -9,13 +10,14 @@
 
 namespace limn::far_ext {
 
-// Three discrete Laplacians of a level of a refinement. Each turns points v into differential coordinates
+// Three discrete Laplacians of a level of a refinement. Each turns points v into differential
+// coordinates
 //     delta_i = sum_j w_ij (v_i - v_j),
 // which point out of the surface where it is convex.
 //
 // Shape     n rows over n vertices of the level; a row adds up to 0.
-// Boundary  delta_i = v_i - (a + b) / 2 for the two neighbours a, b along the boundary: the rule of curves.
-//           Rows of vertices without an edge are empty.
+// Boundary  delta_i = v_i - (a + b) / 2 for the two neighbours a, b along the boundary: the rule of
+//           curves. Rows of vertices without an edge are empty.
 // Errors    BadMesh, for all of them: CheckBoundary's.
 // Source    [Zhu11] Sec. 3.1 and 3.5 (boundary).
 
@@ -28,10 +30,12 @@ inline Index GetOtherEnd(Far::TopologyLevel const& level, Index edge, Index vert
 /// Mean length of the edges; 0 without any.
 double FindMeanEdgeLength(Far::TopologyLevel const& level, std::span<double const> positions);
 
-/// \throws Error  BadMesh: a vertex with other than 0 or 2 boundary edges, so that boundary curves meet there
+/// \throws Error  BadMesh: a vertex with other than 0 or 2 boundary edges, so that boundary curves
+///                meet there
 void CheckBoundary(Far::TopologyLevel const& level);
 
-/// The boundary curves, each a cycle of vertices that starts at its lowest index; sorted by that index.
+/// The boundary curves, each a cycle of vertices that starts at its lowest index; sorted by that
+/// index.
 ///
 /// \pre CheckBoundary has passed
 std::vector<std::vector<Index>> FindBoundaryLoops(Far::TopologyLevel const& level);
@@ -39,35 +43,39 @@ std::vector<std::vector<Index>> FindBoundaryLoops(Far::TopologyLevel const& leve
 /// Combinatorial: w_ij = 1/d over the d edges of vertex i, for faces of any size. No unit.
 SparseRows BuildCombinatorialLaplacian(Far::TopologyLevel const& level);
 
-/// A Laplacian that knows areas: delta_i = (1/area_i) * row i, about 2 H n for mean curvature H (1/length).
-/// Rows and areas of boundary vertices are those of the curve rule, and 1.
+/// A Laplacian that knows areas: delta_i = (1/area_i) * row i, about 2 H n for mean curvature H
+/// (1/length). Rows and areas of boundary vertices are those of the curve rule, and 1.
 struct AreaLaplacian {
     SparseRows rows;
     std::vector<double> areas;
 };
 
-/// Cotangent weights (cot a + cot b) / 2, with mixed Voronoi areas (Voronoi; half or a quarter of the triangle
-/// where it is obtuse).
+/// Cotangent weights (cot a + cot b) / 2, with mixed Voronoi areas (Voronoi; half or a quarter of
+/// the triangle where it is obtuse).
 ///
 /// \param positions  3 per vertex of the level
-/// \throws Error     Unsupported: a face that is no triangle.  BadMesh: a triangle without area, by its number
+/// \throws Error     Unsupported: a face that is no triangle.  BadMesh: a triangle without area, by
+///                   its number
 /// Source  [Zhu11] Sec. 3.1, its references [30] and [31]
-AreaLaplacian BuildCotangentLaplacian(Far::TopologyLevel const& level, std::span<double const> positions);
+AreaLaplacian BuildCotangentLaplacian(Far::TopologyLevel const& level,
+                                      std::span<double const> positions);
 
 /// Its weights alone, per edge of the level.
-std::vector<double> FindCotangentWeights(Far::TopologyLevel const& level, std::span<double const> positions);
+std::vector<double> FindCotangentWeights(Far::TopologyLevel const& level,
+                                         std::span<double const> positions);
 
 /// How the mesh Laplace operator was cut off.
 struct HeatKernel {
     double time = 0.0;    ///< t: the square of the mean edge length
     double radius = 0.0;  ///< beyond it weights are left out
-    /// What was left out of row i adds up to at most this times the farthest distance between two vertices.
+    /// What was left out of row i adds up to at most this times the farthest distance between two
+    /// vertices.
     double truncation = 0.0;
 };
 
-/// The mesh Laplace operator: w_ij = A_j / (4 pi t^2) exp(-|v_i - v_j|^2 / 4t) with A_j a third of the areas
-/// at j, over all j nearer than `radius`; areas are 1. Weights left out are each below 1e-6 of the kernel's
-/// middle.
+/// The mesh Laplace operator: w_ij = A_j / (4 pi t^2) exp(-|v_i - v_j|^2 / 4t) with A_j a third of
+/// the areas at j, over all j nearer than `radius`; areas are 1. Weights left out are each below
+/// 1e-6 of the kernel's middle.
 ///
 /// \param kernel  receives t, the radius and the bound; may be null
 /// \throws Error  as BuildCotangentLaplacian; TooLarge: more than 2^31 weights, some 200 per vertex

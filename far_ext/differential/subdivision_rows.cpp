@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/differential/subdivision_rows.h"
 
 #include <opensubdiv/far/primvarRefiner.h>
@@ -6,7 +7,8 @@
 
 namespace limn::far_ext {
 
-SparseRows BuildSubdivisionRows(Far::TopologyRefiner const& refiner, int level, SubdivisionRule rule) {
+SparseRows BuildSubdivisionRows(Far::TopologyRefiner const& refiner, int level,
+                                SubdivisionRule rule) {
     if (rule == SubdivisionRule::Butterfly) return BuildButterfly(refiner, level);
     auto const coarse = WeightRow::Identity(refiner.GetLevel(level - 1).GetNumVertices());
     std::vector<WeightRow> fine(static_cast<size_t>(refiner.GetLevel(level).GetNumVertices()));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <opensubdiv/far/topologyRefiner.h>
@@ -15,6 +16,7 @@ enum class SubdivisionRule {
 /// S of one step: vertices of `level` x vertices of `level` - 1. Rows add up to 1.
 ///
 /// \throws Error  BadMesh: BuildButterfly's
-SparseRows BuildSubdivisionRows(Far::TopologyRefiner const& refiner, int level, SubdivisionRule rule);
+SparseRows BuildSubdivisionRows(Far::TopologyRefiner const& refiner, int level,
+                                SubdivisionRule rule);
 
 }  // namespace limn::far_ext

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/forms/edge_limits.h"
 
 #include <algorithm>
@@ -6,8 +7,8 @@
 #include <Eigen/Dense>
 #include <fmt/format.h>
 
-#include "far_ext/topology/control_mesh.h"
 #include "far_ext/error.h"
+#include "far_ext/topology/control_mesh.h"
 #include "far_ext/topology/refiner.h"
 
 namespace limn::far_ext {
@@ -22,9 +23,11 @@ int FindSpoke(Far::TopologyLevel const& level, Index vertex, Index edge) {
     return static_cast<int>(std::find(edges.begin(), edges.end(), edge) - edges.begin());
 }
 
-/// The edges of `numFaces` faces round a vertex from one spoke on: spokes outwards, then the other sides of each face,
-/// counter-clockwise. A fan has one spoke more than faces, unless it goes all round.
-std::vector<OrientedEdge> ListWheel(Far::TopologyLevel const& level, Index vertex, int firstSpoke, int numFaces) {
+/// The edges of `numFaces` faces round a vertex from one spoke on: spokes outwards, then the other
+/// sides of each face, counter-clockwise. A fan has one spoke more than faces, unless it goes all
+/// round.
+std::vector<OrientedEdge> ListWheel(Far::TopologyLevel const& level, Index vertex, int firstSpoke,
+                                    int numFaces) {
     auto const edges = level.GetVertexEdges(vertex);
     auto const faces = level.GetVertexFaces(vertex);
     auto const corners = level.GetVertexFaceLocalIndices(vertex);
@@ -35,8 +38,10 @@ std::vector<OrientedEdge> ListWheel(Far::TopologyLevel const& level, Index verte
         list.push_back({edge, GetSignFrom(level, edge, vertex)});
     }
     for (int i = 0; i < numFaces; ++i) {
-        int const face = (firstSpoke + i) % faces.size(), size = level.GetFaceVertices(faces[face]).size();
-        for (int m = 1; m < size - 1; ++m) list.push_back(GetFaceSide(level, faces[face], (corners[face] + m) % size));
+        int const face = (firstSpoke + i) % faces.size(),
+                  size = level.GetFaceVertices(faces[face]).size();
+        for (int m = 1; m < size - 1; ++m)
+            list.push_back(GetFaceSide(level, faces[face], (corners[face] + m) % size));
     }
     return list;
 }
@@ -46,14 +51,16 @@ Index GetEnd(Far::TopologyLevel const& level, Index edge, Index from) {
     return ends[0] == from ? ends[1] : ends[0];
 }
 
-/// Limit of a regular edge a -> b over the wheels of a (from the spoke to b) and of b (from the spoke to a).
+/// Limit of a regular edge a -> b over the wheels of a (from the spoke to b) and of b (from the
+/// spoke to a).
 struct RegularStencil {
     std::vector<double> atStart, atEnd;
 };
 
 RegularStencil MakeRegularStencil(bool isLoop) {
     if (isLoop) {  // forms.md 7.1, over 120
-        RegularStencil stencil{{44, 13, -6, -8, -6, 13, -13, -5, -1, 1, 5, 13}, {0, 0, 6, 8, 6, 0, 0, 5, 1, -1, -5, 0}};
+        RegularStencil stencil{{44, 13, -6, -8, -6, 13, -13, -5, -1, 1, 5, 13},
+                               {0, 0, 6, 8, 6, 0, 0, 5, 1, -1, -5, 0}};
         for (auto* part : {&stencil.atStart, &stencil.atEnd}) {
             for (double& weight : *part) weight /= 120.0;
         }
@@ -83,7 +90,8 @@ int FindSharpSpoke(Far::TopologyLevel const& level, Index vertex) {
     return 0;
 }
 
-/// Along a boundary or an infinitely sharp crease only the curve counts: 1/6, 2/3, 1/6; at a corner 5/6 and no 1/6 beyond it.
+/// Along a boundary or an infinitely sharp crease only the curve counts: 1/6, 2/3, 1/6; at a corner
+/// 5/6 and no 1/6 beyond it.
 WeightRow FindCurve(Far::TopologyLevel const& level, Index edge) {
     WeightRow row;
     auto const ends = level.GetEdgeVertices(edge);
@@ -93,34 +101,43 @@ WeightRow FindCurve(Far::TopologyLevel const& level, Index edge) {
         Index const vertex = ends[side];
         Index other = -1;
         for (Index candidate : level.GetVertexEdges(vertex)) {
-            if (candidate != edge && (level.IsEdgeInfSharp(candidate) || level.IsEdgeBoundary(candidate))) other = candidate;
+            if (candidate != edge &&
+                (level.IsEdgeInfSharp(candidate) || level.IsEdgeBoundary(candidate)))
+                other = candidate;
         }
         if (level.GetVertexRule(vertex) != Sdc::Crease::RULE_CREASE || other < 0) own += 1.0 / 6.0;
-        // The neighbour in the direction of ends[0] -> ends[1]: it comes in at the first end and leaves from the second.
-        else row.Add(other, sign * (side == 0 ? -1.0 : 1.0) * GetSignFrom(level, other, vertex) / 6.0);
+        // The neighbour in the direction of ends[0] -> ends[1]: it comes in at the first end and
+        // leaves from the second.
+        else
+            row.Add(other,
+                    sign * (side == 0 ? -1.0 : 1.0) * GetSignFrom(level, other, vertex) / 6.0);
     }
     row.Add(edge, own);
     return row;
 }
 
-/// The edges within `rings` steps of a vertex, in an order that depends on what the neighbourhood looks like alone: the same for
-/// all neighbourhoods that look alike.
-std::vector<OrientedEdge> WalkNeighbourhood(Far::TopologyLevel const& level, Index vertex, int rings) {
+/// The edges within `rings` steps of a vertex, in an order that depends on what the neighbourhood
+/// looks like alone: the same for all neighbourhoods that look alike.
+std::vector<OrientedEdge> WalkNeighbourhood(Far::TopologyLevel const& level, Index vertex,
+                                            int rings) {
     struct Stop {
         Index vertex, cameBy;
         int ring;
     };
     std::vector<Stop> stops{{vertex, -1, 0}};
-    std::vector<char> isSeen(static_cast<size_t>(level.GetNumVertices()), 0), isListed(static_cast<size_t>(level.GetNumEdges()), 0);
+    std::vector<char> isSeen(static_cast<size_t>(level.GetNumVertices()), 0),
+        isListed(static_cast<size_t>(level.GetNumEdges()), 0);
     isSeen[vertex] = 1;
     std::vector<OrientedEdge> list;
     for (size_t at = 0; at < stops.size(); ++at) {
         auto const [here, cameBy, ring] = stops[at];
         auto const edges = level.GetVertexEdges(here);
         int const count = edges.size();
-        // The middle starts at its sharp spoke, if it has one; boundary vertices at their first, others at the edge they
-        // were reached by.
-        int const first = cameBy < 0 ? FindSharpSpoke(level, here) : level.IsVertexBoundary(here) ? 0 : FindSpoke(level, here, cameBy);
+        // The middle starts at its sharp spoke, if it has one; boundary vertices at their first,
+        // others at the edge they were reached by.
+        int const first = cameBy < 0                     ? FindSharpSpoke(level, here)
+                          : level.IsVertexBoundary(here) ? 0
+                                                         : FindSpoke(level, here, cameBy);
         for (int i = 0; i < count; ++i) {
             Index const edge = edges[(first + i) % count], end = GetEnd(level, edge, here);
             if (ring == rings && !isSeen[end]) continue;
@@ -137,38 +154,53 @@ std::vector<OrientedEdge> WalkNeighbourhood(Far::TopologyLevel const& level, Ind
 }  // namespace
 
 EdgeLimits::EdgeLimits(Far::TopologyRefiner const& refiner, int level)
-    : _refiner(refiner), _coarse(refiner.GetLevel(level)), _fine(refiner.GetLevel(level + 1)), _s1(BuildFormStencils(refiner, level + 1).s1) {}
+    : _refiner(refiner),
+      _coarse(refiner.GetLevel(level)),
+      _fine(refiner.GetLevel(level + 1)),
+      _s1(BuildFormStencils(refiner, level + 1).s1) {}
 
 EdgeLimits::Fan EdgeLimits::FindFan(Index vertex, Index edge) const {
     auto const edges = _fine.GetVertexEdges(vertex);
     auto const faces = _fine.GetVertexFaces(vertex);
     int const spoke = FindSpoke(_fine, vertex, edge), k = faces.size();
     bool const isInterior = edges.size() == k;
-    auto const isSharp = [&](int i) { return _fine.IsEdgeInfSharp(edges[i]) || _fine.IsEdgeBoundary(edges[i]); };
+    auto const isSharp = [&](int i) {
+        return _fine.IsEdgeInfSharp(edges[i]) || _fine.IsEdgeBoundary(edges[i]);
+    };
     int numSharp = 0;
     for (int i = 0; i < edges.size(); ++i) {
         if (_fine.IsEdgeSemiSharp(edges[i])) {
-            throw Error(ErrorCode::BadOption, fmt::format("vertex {} of the level has a semi-sharp edge; limits need levels on which sharpness has faded", vertex));
+            throw Error(ErrorCode::BadOption,
+                        fmt::format("vertex {} of the level has a semi-sharp edge; limits need "
+                                    "levels on which sharpness has faded",
+                                    vertex));
         }
         numSharp += isSharp(i);
     }
     if (_fine.IsVertexSemiSharp(vertex)) {
-        throw Error(ErrorCode::BadOption, fmt::format("vertex {} of the level is semi-sharp; limits need levels on which sharpness has faded", vertex));
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("vertex {} of the level is semi-sharp; limits need levels on which "
+                                "sharpness has faded",
+                                vertex));
     }
-    if (isInterior && numSharp == 0) return {_fine.IsVertexInfSharp(vertex) ? Kind::Corner : Kind::Interior, spoke, k, 0};
+    if (isInterior && numSharp == 0)
+        return {_fine.IsVertexInfSharp(vertex) ? Kind::Corner : Kind::Interior, spoke, k, 0};
     int first = spoke, last = spoke;
     while (!isSharp(first)) first = (first + edges.size() - 1) % edges.size();
     do last = (last + 1) % edges.size();
     while (!isSharp(last));
     Sdc::Crease::Rule const rule = _fine.GetVertexRule(vertex);
-    Kind const kind = rule == Sdc::Crease::RULE_CREASE ? Kind::Curve : rule == Sdc::Crease::RULE_DART ? Kind::Dart : Kind::Corner;
+    Kind const kind = rule == Sdc::Crease::RULE_CREASE ? Kind::Curve
+                      : rule == Sdc::Crease::RULE_DART ? Kind::Dart
+                                                       : Kind::Corner;
     int const count = edges.size(), size = (last - first + count) % count;
     return {kind, first, size == 0 ? k : size, (spoke - first + count) % count};
 }
 
 /// Builds a neighbourhood that is regular but for its middle, and solves there.
 EdgeLimits::HalfLimit EdgeLimits::SolveHalf(Kind kind, int size, int spoke) const {
-    bool const isLoop = _refiner.GetSchemeType() == Sdc::SCHEME_LOOP, isOpen = kind == Kind::Curve || kind == Kind::Corner;
+    bool const isLoop = _refiner.GetSchemeType() == Sdc::SCHEME_LOOP,
+               isOpen = kind == Kind::Curve || kind == Kind::Corner;
     ControlMesh mesh;
     mesh.scheme = _refiner.GetSchemeType();
     mesh.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
@@ -177,8 +209,10 @@ EdgeLimits::HalfLimit EdgeLimits::SolveHalf(Kind kind, int size, int spoke) cons
     for (int i = 0; i < size; ++i) {
         Index const a = 1 + i, b = 1 + (i + 1) % numSpokes;
         mesh.faceSizes.push_back(isLoop ? 3 : 4);
-        if (isLoop) mesh.faceVertices.insert(mesh.faceVertices.end(), {0, a, b});
-        else mesh.faceVertices.insert(mesh.faceVertices.end(), {0, a, 1 + numSpokes + i, b});
+        if (isLoop)
+            mesh.faceVertices.insert(mesh.faceVertices.end(), {0, a, b});
+        else
+            mesh.faceVertices.insert(mesh.faceVertices.end(), {0, a, 1 + numSpokes + i, b});
     }
     if (kind == Kind::Corner) {
         mesh.cornerVertices.push_back(0);
@@ -194,10 +228,12 @@ EdgeLimits::HalfLimit EdgeLimits::SolveHalf(Kind kind, int size, int spoke) cons
     options.fullTopologyInLastLevel = true;
     refiner->RefineUniform(options);
     Index middle = 0;
-    for (int level = 0; level < kLevel; ++level) middle = refiner->GetLevel(level).GetVertexChildVertex(middle);
+    for (int level = 0; level < kLevel; ++level)
+        middle = refiner->GetLevel(level).GetVertexChildVertex(middle);
     auto const coarse = refiner->GetLevel(kLevel), fine = refiner->GetLevel(kLevel + 1);
 
-    auto const unknowns = WalkNeighbourhood(coarse, middle, kRings), images = WalkNeighbourhood(fine, coarse.GetVertexChildVertex(middle), kRings);
+    auto const unknowns = WalkNeighbourhood(coarse, middle, kRings),
+               images = WalkNeighbourhood(fine, coarse.GetVertexChildVertex(middle), kRings);
     Eigen::Index const count = static_cast<Eigen::Index>(unknowns.size());
     std::vector<int> place(static_cast<size_t>(coarse.GetNumEdges()), -1);
     for (size_t i = 0; i < unknowns.size(); ++i) place[unknowns[i].edge] = static_cast<int>(i);
@@ -207,33 +243,42 @@ EdgeLimits::HalfLimit EdgeLimits::SolveHalf(Kind kind, int size, int spoke) cons
         auto const& image = images[static_cast<size_t>(row)];
         for (int k = s1.offsets[image.edge]; k < s1.offsets[image.edge + 1]; ++k) {
             int const column = place[s1.indices[k]];
-            if (column >= 0) A(row, column) += image.sign * unknowns[static_cast<size_t>(column)].sign * s1.weights[k];
+            if (column >= 0)
+                A(row, column) +=
+                    image.sign * unknowns[static_cast<size_t>(column)].sign * s1.weights[k];
         }
     }
     // The regular limit one step out along the spoke: from its end straight on.
     int const firstSpoke = kind == Kind::Dart ? FindSharpSpoke(coarse, middle) : 0;
-    Index const spokeEdge = coarse.GetVertexEdges(middle)[(firstSpoke + spoke) % coarse.GetVertexEdges(middle).size()];
+    Index const spokeEdge =
+        coarse.GetVertexEdges(middle)[(firstSpoke + spoke) % coarse.GetVertexEdges(middle).size()];
     Index const end = GetEnd(coarse, spokeEdge, middle);
     int const back = FindSpoke(coarse, end, spokeEdge), valence = coarse.GetVertexEdges(end).size();
     int const ahead = (back + valence / 2) % valence;
     Index const next = coarse.GetVertexEdges(end)[ahead], far = GetEnd(coarse, next, end);
     RegularStencil const stencil = MakeRegularStencil(isLoop);
     Eigen::RowVectorXd regular = Eigen::RowVectorXd::Zero(count);
-    auto const add = [&](std::vector<OrientedEdge> const& edges, std::vector<double> const& weights) {
+    auto const add = [&](std::vector<OrientedEdge> const& edges,
+                         std::vector<double> const& weights) {
         for (size_t i = 0; i < weights.size(); ++i) {
             if (weights[i] == 0.0) continue;
             int const column = place[edges[i].edge];
-            regular[column] += weights[i] * edges[i].sign * unknowns[static_cast<size_t>(column)].sign;
+            regular[column] +=
+                weights[i] * edges[i].sign * unknowns[static_cast<size_t>(column)].sign;
         }
     };
     if (kind == Kind::Dart && spoke == 0) {  // along the crease: a cubic curve's
-        int const nextBack = FindSpoke(coarse, far, next), farValence = coarse.GetVertexEdges(far).size();
+        int const nextBack = FindSpoke(coarse, far, next),
+                  farValence = coarse.GetVertexEdges(far).size();
         Index const beyond = coarse.GetVertexEdges(far)[(nextBack + farValence / 2) % farValence];
-        add({{spokeEdge, GetSignFrom(coarse, spokeEdge, middle)}, {next, GetSignFrom(coarse, next, end)}, {beyond, GetSignFrom(coarse, beyond, far)}},
+        add({{spokeEdge, GetSignFrom(coarse, spokeEdge, middle)},
+             {next, GetSignFrom(coarse, next, end)},
+             {beyond, GetSignFrom(coarse, beyond, far)}},
             {1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0});
     } else {
         add(ListWheel(coarse, end, ahead, valence), stencil.atStart);
-        add(ListWheel(coarse, far, FindSpoke(coarse, far, next), coarse.GetVertexEdges(far).size()), stencil.atEnd);
+        add(ListWheel(coarse, far, FindSpoke(coarse, far, next), coarse.GetVertexEdges(far).size()),
+            stencil.atEnd);
     }
 
     Eigen::MatrixXd const system = (Eigen::MatrixXd::Identity(count, count) - A).transpose();
@@ -242,20 +287,25 @@ EdgeLimits::HalfLimit EdgeLimits::SolveHalf(Kind kind, int size, int spoke) cons
         std::vector<double> weights;
         for (auto const& edge : edges) {
             int const column = place[edge.edge];
-            weights.push_back(column >= 0 ? rest[column] * edge.sign * unknowns[static_cast<size_t>(column)].sign : 0.0);
+            weights.push_back(column >= 0 ? rest[column] * edge.sign *
+                                                unknowns[static_cast<size_t>(column)].sign
+                                          : 0.0);
             if (column >= 0) rest[column] = 0.0;  // an edge of both wheels counts once
         }
         return weights;
     };
     HalfLimit half;
-    half.atVertex = take(ListWheel(coarse, middle, kind == Kind::Interior ? spoke : firstSpoke, size));
+    half.atVertex =
+        take(ListWheel(coarse, middle, kind == Kind::Interior ? spoke : firstSpoke, size));
     half.atMiddle = take(ListWheel(coarse, end, back, valence));
     return half;
 }
 
 EdgeLimits::HalfLimit const& EdgeLimits::FindHalf(Fan const& fan) {
     if (fan.size > kMaxFan) {
-        throw Error(ErrorCode::TooLarge, fmt::format("a fan of {} faces; limits along edges are found for up to {}", fan.size, kMaxFan));
+        throw Error(ErrorCode::TooLarge,
+                    fmt::format("a fan of {} faces; limits along edges are found for up to {}",
+                                fan.size, kMaxFan));
     }
     auto const key = std::tuple(fan.kind, fan.size, fan.kind == Kind::Interior ? 0 : fan.spoke);
     auto const found = _halves.find(key);
@@ -265,27 +315,33 @@ EdgeLimits::HalfLimit const& EdgeLimits::FindHalf(Fan const& fan) {
 
 /// Adds the value of a refined edge, as weights over the level's.
 void EdgeLimits::AddRefined(Index fineEdge, double weight, WeightRow& row) const {
-    for (int k = _s1.offsets[fineEdge]; weight != 0.0 && k < _s1.offsets[fineEdge + 1]; ++k) row.Add(_s1.indices[k], weight * _s1.weights[k]);
+    for (int k = _s1.offsets[fineEdge]; weight != 0.0 && k < _s1.offsets[fineEdge + 1]; ++k)
+        row.Add(_s1.indices[k], weight * _s1.weights[k]);
 }
 
 /// Adds the limit along the child at `vertex` of a coarse edge, from the vertex to the middle.
 void EdgeLimits::AddHalf(Index vertex, Index edge, double sign, WeightRow& row) {
     Index const v = _coarse.GetVertexChildVertex(vertex), m = _coarse.GetEdgeChildVertex(edge);
-    Index const half = _coarse.GetEdgeChildEdges(edge)[_coarse.GetEdgeVertices(edge)[0] == vertex ? 0 : 1];
+    Index const half =
+        _coarse.GetEdgeChildEdges(edge)[_coarse.GetEdgeVertices(edge)[0] == vertex ? 0 : 1];
     bool const isSharp = _fine.IsEdgeBoundary(half) || _fine.IsEdgeInfSharp(half);
     if (isSharp && _fine.GetVertexRule(v) != Sdc::Crease::RULE_DART) {
         double const along = sign * GetSignFrom(_fine, half, v);
         WeightRow const curve = FindCurve(_fine, half);
-        for (auto const& [index, weight] : curve.GetEntries()) AddRefined(index, along * weight, row);
+        for (auto const& [index, weight] : curve.GetEntries())
+            AddRefined(index, along * weight, row);
         return;
     }
     Fan const fan = FindFan(v, half);
     HalfLimit const& limit = FindHalf(fan);
-    auto const add = [&](std::vector<OrientedEdge> const& edges, std::vector<double> const& weights) {
-        for (size_t i = 0; i < weights.size(); ++i) AddRefined(edges[i].edge, sign * weights[i] * edges[i].sign, row);
+    auto const add = [&](std::vector<OrientedEdge> const& edges,
+                         std::vector<double> const& weights) {
+        for (size_t i = 0; i < weights.size(); ++i)
+            AddRefined(edges[i].edge, sign * weights[i] * edges[i].sign, row);
     };
     add(ListWheel(_fine, v, fan.first, fan.size), limit.atVertex);
-    add(ListWheel(_fine, m, FindSpoke(_fine, m, half), _fine.GetVertexFaces(m).size()), limit.atMiddle);
+    add(ListWheel(_fine, m, FindSpoke(_fine, m, half), _fine.GetVertexFaces(m).size()),
+        limit.atMiddle);
 }
 
 WeightRow EdgeLimits::Find(Index edge) {

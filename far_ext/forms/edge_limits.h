@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <map>
@@ -12,15 +13,17 @@
 
 namespace limn::far_ext {
 
-/// The circulation of a subdivided 1-form along the limit of an edge: what the values of all its pieces add up to, as
-/// weights over the edges of the level.
+/// The circulation of a subdivided 1-form along the limit of an edge: what the values of all its
+/// pieces add up to, as weights over the edges of the level.
 ///
-/// Laws       of a gradient d0 f it is the difference of the limits of f; limit(e) = limit(first half) + limit(second half).
-/// Features   boundaries, corners, infinitely sharp creases: each fan between sharp edges is a boundary of its own.
-///            Darts, too. Semi-sharp features have to have faded.
-/// How        an edge is refined once; its two halves (v -> m) have a regular end m, and the limit along such a half solves
-///            L (I - A) = l A with A the subdivision near v and l the regular limit one step out. L depends on v's fan
-///            and the spoke alone and is found once for each.
+/// Laws       of a gradient d0 f it is the difference of the limits of f; limit(e) = limit(first
+///            half) + limit(second half).
+/// Features   boundaries, corners, infinitely sharp creases: each fan between sharp edges is a
+///            boundary of its own. Darts, too. Semi-sharp features have to have faded.
+/// How        an edge is refined once; its two halves (v -> m) have a regular end m, and the limit
+///            along such a half solves L (I - A) = l A with A the subdivision near v and l the
+///            regular limit one step out. L depends on v's fan and the spoke alone and is found
+///            once for each.
 /// Threads    one at a time.
 /// Source     forms.md 7.1
 class EdgeLimits {
@@ -29,18 +32,20 @@ public:
     /// \pre            CheckForms has passed
     EdgeLimits(Far::TopologyRefiner const& refiner, int level);
 
-    /// \throws Error  BadOption: a semi-sharp feature near the edge.  TooLarge: more than 64 faces between sharp edges at an end
+    /// \throws Error  BadOption: a semi-sharp feature near the edge.  TooLarge: more than 64 faces
+    ///                between sharp edges at an end
     WeightRow Find(Index edge);
 
 private:
     enum class Kind { Interior, Dart, Curve, Corner };
-    /// The fan that holds a spoke: faces `first` .. `first` + `size` - 1 of a wheel, and the spoke's place in it.
+    /// The fan that holds a spoke: faces `first` .. `first` + `size` - 1 of a wheel, and the
+    /// spoke's place in it.
     struct Fan {
         Kind kind;
         int first, size, spoke;
     };
-    /// The limit along a half, over the wheel's fan from its first spoke (a dart: the sharp one; interior: the half's own), then
-    /// the wheel of m from the spoke back to v.
+    /// The limit along a half, over the wheel's fan from its first spoke (a dart: the sharp one;
+    /// interior: the half's own), then the wheel of m from the spoke back to v.
     struct HalfLimit {
         std::vector<double> atVertex, atMiddle;
     };

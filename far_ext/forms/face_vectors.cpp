@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/forms/face_vectors.h"
 
 #include <vector>
@@ -12,11 +13,13 @@ namespace {
 
 using Vectors = std::vector<Eigen::Vector3d>;
 
-/// ((S/3 - beta) (b-a)^perp + (S/3 - gamma) (c-a)^perp) / 2A with alpha on b->c, beta on c->a, gamma on a->b: by side.
+/// ((S/3 - beta) (b-a)^perp + (S/3 - gamma) (c-a)^perp) / 2A with alpha on b->c, beta on c->a,
+/// gamma on a->b: by side.
 Vectors MakeWhitney(Vectors const& corners, Eigen::Vector3d const& areaVector) {
     Eigen::Vector3d const normal = areaVector.normalized();
     double const twiceArea = 2.0 * areaVector.norm();
-    Eigen::Vector3d const p = normal.cross(corners[1] - corners[0]) / twiceArea, q = normal.cross(corners[2] - corners[0]) / twiceArea;
+    Eigen::Vector3d const p = normal.cross(corners[1] - corners[0]) / twiceArea,
+                          q = normal.cross(corners[2] - corners[0]) / twiceArea;
     // Sides in order: gamma, alpha, beta.
     return {p / 3.0 - q * (2.0 / 3.0), (p + q) / 3.0, q / 3.0 - p * (2.0 / 3.0)};
 }
@@ -43,10 +46,14 @@ SparseRows BuildFaceVectors(Far::TopologyLevel const& level, std::span<double co
     SparseRows rows;
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         Vectors corners;
-        for (Index vertex : level.GetFaceVertices(face)) corners.emplace_back(Eigen::Map<Eigen::Vector3d const>(&positions[3 * static_cast<size_t>(vertex)]));
+        for (Index vertex : level.GetFaceVertices(face))
+            corners.emplace_back(
+                Eigen::Map<Eigen::Vector3d const>(&positions[3 * static_cast<size_t>(vertex)]));
         Eigen::Vector3d areaVector = Eigen::Vector3d::Zero();
-        for (size_t j = 2; j < corners.size(); ++j) areaVector += 0.5 * (corners[j - 1] - corners[0]).cross(corners[j] - corners[0]);
-        Vectors const weights = corners.size() == 3 ? MakeWhitney(corners, areaVector) : MakeLeastSquares(corners, areaVector);
+        for (size_t j = 2; j < corners.size(); ++j)
+            areaVector += 0.5 * (corners[j - 1] - corners[0]).cross(corners[j] - corners[0]);
+        Vectors const weights = corners.size() == 3 ? MakeWhitney(corners, areaVector)
+                                                    : MakeLeastSquares(corners, areaVector);
         for (int axis = 0; axis < 3; ++axis) {
             for (size_t j = 0; j < weights.size(); ++j) {
                 OrientedEdge const side = GetFaceSide(level, face, static_cast<int>(j));

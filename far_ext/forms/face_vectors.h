@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <span>
@@ -8,11 +9,12 @@
 
 namespace limn::far_ext {
 
-/// The tangent vector of a 1-form at the middle of each face: three rows (x, y, z) per face over the level's edges.
+/// The tangent vector of a 1-form at the middle of each face: three rows (x, y, z) per face over
+/// the level's edges.
 ///
 /// Triangles  Whitney's interpolation at the centroid: exact for constant fields.
-/// Polygons   the vector in the plane of the area vector that fits the sides best (least squares); the same for
-///            constant fields.
+/// Polygons   the vector in the plane of the area vector that fits the sides best (least squares);
+///            the same for constant fields.
 /// \param positions  3 per vertex of the level
 /// \pre              faces have areas (FindHodgeStars refuses others)
 /// Source            [Wang06] Sec. 3; forms.md 8

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/forms/find_wheel.h"
 
 #include <vector>
@@ -10,19 +11,24 @@ namespace {
 
 using Rule = Sdc::Crease::Rule;
 
-bool IsSmooth(Rule rule) { return rule == Sdc::Crease::RULE_SMOOTH || rule == Sdc::Crease::RULE_DART; }
+bool IsSmooth(Rule rule) {
+    return rule == Sdc::Crease::RULE_SMOOTH || rule == Sdc::Crease::RULE_DART;
+}
 
 }  // namespace
 
-double FindFaceShare(Far::TopologyRefiner const& refiner, Far::TopologyLevel const& level, Far::TopologyLevel const* next, Index edge) {
+double FindFaceShare(Far::TopologyRefiner const& refiner, Far::TopologyLevel const& level,
+                     Far::TopologyLevel const* next, Index edge) {
     double const smooth = refiner.GetSchemeType() == Sdc::SCHEME_LOOP ? 0.125 : 0.25;
     float const sharpness = level.GetEdgeSharpness(edge);
     if (sharpness <= 0.0f) return smooth;
-    if (!next || next->GetVertexRule(level.GetEdgeChildVertex(edge)) == Sdc::Crease::RULE_CREASE) return 0.0;
+    if (!next || next->GetVertexRule(level.GetEdgeChildVertex(edge)) == Sdc::Crease::RULE_CREASE)
+        return 0.0;
     return smooth * static_cast<double>(1.0f - sharpness);
 }
 
-Wheel FindWheel(Far::TopologyRefiner const& refiner, Far::TopologyLevel const& level, Far::TopologyLevel const* next, Index vertex) {
+Wheel FindWheel(Far::TopologyRefiner const& refiner, Far::TopologyLevel const& level,
+                Far::TopologyLevel const* next, Index vertex) {
     Sdc::SchemeType const scheme = refiner.GetSchemeType();
     Sdc::Crease const creasing(refiner.GetSchemeOptions());
     auto const faces = level.GetVertexFaces(vertex);
@@ -37,7 +43,9 @@ Wheel FindWheel(Far::TopologyRefiner const& refiner, Far::TopologyLevel const& l
     for (Index edge : edges) {
         wheel.faceShares.push_back(FindFaceShare(refiner, level, next, edge));
         before.push_back(level.GetEdgeSharpness(edge));
-        after.push_back(next ? next->GetEdgeSharpness(level.GetEdgeChildEdges(edge)[level.GetEdgeVertices(edge)[0] == vertex ? 0 : 1]) : before.back());
+        after.push_back(next ? next->GetEdgeSharpness(level.GetEdgeChildEdges(
+                                   edge)[level.GetEdgeVertices(edge)[0] == vertex ? 0 : 1])
+                             : before.back());
     }
     Rule const parent = level.GetVertexRule(vertex);
     Rule child = parent;
@@ -46,20 +54,23 @@ Wheel FindWheel(Far::TopologyRefiner const& refiner, Far::TopologyLevel const& l
         Index const childVertex = level.GetVertexChildVertex(vertex);
         child = next->GetVertexRule(childVertex);
         if (parent != child && !IsSmooth(parent)) {
-            t = static_cast<double>(creasing.ComputeFractionalWeightAtVertex(level.GetVertexSharpness(vertex), next->GetVertexSharpness(childVertex),
-                                                                             numSpokes, before.data(), after.data()));
+            t = static_cast<double>(creasing.ComputeFractionalWeightAtVertex(
+                level.GetVertexSharpness(vertex), next->GetVertexSharpness(childVertex), numSpokes,
+                before.data(), after.data()));
         }
     }
 
     wheel.edgeWeights.assign(static_cast<size_t>(numSpokes), 0.0);
     double const square = static_cast<double>(numSpokes) * numSpokes;
-    auto const add = [&](Wheel::Rule& target, Rule rule, std::vector<float> const& sharpness, double share) {
+    auto const add = [&](Wheel::Rule& target, Rule rule, std::vector<float> const& sharpness,
+                         double share) {
         target.share = share;
         target.isCrease = rule == Sdc::Crease::RULE_CREASE;
         for (float s : sharpness) target.isSharp.push_back(s > 0.0f);
         if (share == 0.0) return;
         if (IsSmooth(rule)) {
-            for (double& a : wheel.edgeWeights) a += share * (scheme == Sdc::SCHEME_LOOP ? GetLoopWeight(k) : 1.0 / square);
+            for (double& a : wheel.edgeWeights)
+                a += share * (scheme == Sdc::SCHEME_LOOP ? GetLoopWeight(k) : 1.0 / square);
             if (scheme == Sdc::SCHEME_CATMARK) wheel.faceWeight += share / square;
         } else if (target.isCrease) {
             int ends[2];

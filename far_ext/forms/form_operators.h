@@ -1,15 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <opensubdiv/far/topologyRefiner.h>
 
-#include "far_ext/topology/control_mesh.h"
 #include "far_ext/rows/sparse_rows.h"
+#include "far_ext/topology/control_mesh.h"
 
 namespace limn::far_ext {
 
-// Discrete forms on a level of a refinement: a 0-form has a value per vertex, a 1-form per edge (the integral along
-// it), a 2-form per face (the integral over it). Edges are Far's; each runs from its lower vertex to its higher one.
-// Faces run as they are listed.
+// Discrete forms on a level of a refinement: a 0-form has a value per vertex, a 1-form per edge
+// (the integral along it), a 2-form per face (the integral over it). Edges are Far's; each runs
+// from its lower vertex to its higher one. Faces run as they are listed.
 //
 // Source  [Wang06] Sec. 3; forms.md 1.
 
@@ -45,10 +46,11 @@ SparseRows BuildD1(Far::TopologyLevel const& level);
 
 /// Refuses a base mesh on which forms cannot be subdivided.
 ///
-/// \throws Error  BadMesh: an edge with more than two faces, a vertex whose faces form more than one fan, faces wound
-///                against each other (a face is named), a surface that cannot be oriented.  BadOption: another scheme
-///                than Catmull-Clark and Loop, boundaries under `--boundary none`.  Unsupported: the rule
-///                `--triangles smooth` where a mesh has triangles
+/// \throws Error  BadMesh: an edge with more than two faces, a vertex whose faces form more than
+///                one fan, faces wound against each other (a face is named), a surface that cannot
+///                be oriented.  BadOption: another scheme than Catmull-Clark and Loop, boundaries
+///                under `--boundary none`.  Unsupported: the rule `--triangles smooth` where a mesh
+///                has triangles
 void CheckForms(Far::TopologyRefiner const& refiner);
 
 }  // namespace limn::far_ext

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/forms/form_stencils.h"
 
 #include <algorithm>
@@ -29,13 +30,18 @@ std::vector<double> MakeKey(Wheel const& wheel) {
     return key;
 }
 
-/// What is read of a level to make the next one's stencils. Rows are measured first and written in place; wheels that look
-/// alike share their solution.
+/// What is read of a level to make the next one's stencils. Rows are measured first and written in
+/// place; wheels that look alike share their solution.
 class FormStencilBuilder {
 public:
     FormStencilBuilder(Far::TopologyRefiner const& refiner, int level)
-        : _refiner(refiner), _scheme(refiner.GetSchemeType()), _coarse(refiner.GetLevel(level - 1)), _fine(refiner.GetLevel(level)),
-          _s1(_fine.GetNumEdges()), _s2(_fine.GetNumFaces()), _seen(static_cast<size_t>(_coarse.GetNumEdges()), -1) {}
+        : _refiner(refiner),
+          _scheme(refiner.GetSchemeType()),
+          _coarse(refiner.GetLevel(level - 1)),
+          _fine(refiner.GetLevel(level)),
+          _s1(_fine.GetNumEdges()),
+          _s2(_fine.GetNumFaces()),
+          _seen(static_cast<size_t>(_coarse.GetNumEdges()), -1) {}
 
     FormStencils Build() {
         bool const isLoop = _scheme == Sdc::SCHEME_LOOP;
@@ -45,8 +51,10 @@ public:
             if (_coarse.GetVertexFaces(vertex).size() > 0) MeasureVertex(vertex);
         }
         for (Index face = 0; face < _coarse.GetNumFaces(); ++face) {
-            if (isLoop) MeasureCentralChild(face);
-            else MeasureEdgesToCentre(face);
+            if (isLoop)
+                MeasureCentralChild(face);
+            else
+                MeasureEdgesToCentre(face);
         }
         _s1.Allocate();
         _s2.Allocate();
@@ -54,8 +62,10 @@ public:
             if (_rowsOfVertex[vertex]) WriteVertex(vertex, *_rowsOfVertex[vertex]);
         }
         for (Index face = 0; face < _coarse.GetNumFaces(); ++face) {
-            if (isLoop) WriteCentralChild(face);
-            else WriteEdgesToCentre(face);
+            if (isLoop)
+                WriteCentralChild(face);
+            else
+                WriteEdgesToCentre(face);
         }
         return {_s1.Get(), _s2.Get()};
     }
@@ -80,7 +90,8 @@ private:
     void WriteEdgesToCentre(Index face);
 
     /// Writes a row over the wheel of which _wheelEdges tells the edges.
-    void WriteEdgeRow(WheelRows::Row const& row, Index from, Index to, Index fineEdge, bool isRepeated) {
+    void WriteEdgeRow(WheelRows::Row const& row, Index from, Index to, Index fineEdge,
+                      bool isRepeated) {
         double const sign = from < to ? 1.0 : -1.0;
         _s1.Start(fineEdge);
         for (auto const& [local, weight] : row) {
@@ -95,11 +106,11 @@ private:
     Far::TopologyLevel _coarse, _fine;
     RowWriter _s1, _s2;
     std::vector<OrientedEdge> _wheelEdges;
-    std::vector<std::unique_ptr<WheelRows>> _smoothRows;       // by valence
-    std::map<std::vector<double>, WheelRows> _otherRows;       // by MakeKey
+    std::vector<std::unique_ptr<WheelRows>> _smoothRows;  // by valence
+    std::map<std::vector<double>, WheelRows> _otherRows;  // by MakeKey
     std::vector<WheelRows const*> _rowsOfVertex;
-    std::vector<double> _mu;                                   // Loop: per corner of the faces
-    std::vector<Index> _seen;                                  // per edge: the vertex whose wheel it was last found in
+    std::vector<double> _mu;   // Loop: per corner of the faces
+    std::vector<Index> _seen;  // per edge: the vertex whose wheel it was last found in
 };
 
 /// Its wheel depends on its valence alone.
@@ -107,7 +118,8 @@ bool FormStencilBuilder::IsSmoothAndRegular(Index vertex) const {
     int const size = _scheme == Sdc::SCHEME_LOOP ? 3 : 4;
     auto const faces = _coarse.GetVertexFaces(vertex);
     return IsSmoothInterior(_coarse, vertex) &&
-           std::all_of(faces.begin(), faces.end(), [&](Index face) { return _coarse.GetFaceVertices(face).size() == size; });
+           std::all_of(faces.begin(), faces.end(),
+                       [&](Index face) { return _coarse.GetFaceVertices(face).size() == size; });
 }
 
 WheelRows const& FormStencilBuilder::GetRows(Index vertex) {
@@ -120,7 +132,9 @@ WheelRows const& FormStencilBuilder::GetRows(Index vertex) {
     }
     if (_smoothRows.size() <= k) _smoothRows.resize(k + 1);
     auto& known = _smoothRows[k];
-    if (!known) known = std::make_unique<WheelRows>(MakeWheelRows(_scheme, MakeSmoothWheel(_scheme, static_cast<int>(k))));
+    if (!known)
+        known = std::make_unique<WheelRows>(
+            MakeWheelRows(_scheme, MakeSmoothWheel(_scheme, static_cast<int>(k))));
     return *known;
 }
 
@@ -129,11 +143,14 @@ void FormStencilBuilder::MeasureVertex(Index vertex) {
     auto const corners = _coarse.GetVertexFaceLocalIndices(vertex);
     auto const edges = _coarse.GetVertexEdges(vertex);
     if (faces.size() > 4096) {
-        throw Error(ErrorCode::TooLarge, fmt::format("vertex {} has {} faces; stencils of forms go up to 4096", vertex, faces.size()));
+        throw Error(ErrorCode::TooLarge,
+                    fmt::format("vertex {} has {} faces; stencils of forms go up to 4096", vertex,
+                                faces.size()));
     }
     WheelRows const& rows = GetRows(vertex);
     _rowsOfVertex[vertex] = &rows;
-    for (int i = 0; i < edges.size(); ++i) _s1.SetSize(GetFineSpoke(vertex, edges[i]), rows.even[static_cast<size_t>(i)].size());
+    for (int i = 0; i < edges.size(); ++i)
+        _s1.SetSize(GetFineSpoke(vertex, edges[i]), rows.even[static_cast<size_t>(i)].size());
     for (int i = 0; i < faces.size(); ++i) {
         size_t const at = static_cast<size_t>(i);
         _s2.SetSize(_coarse.GetFaceChildFaces(faces[i])[corners[i]], rows.children[at].size());
@@ -157,20 +174,24 @@ void FormStencilBuilder::WriteVertex(Index vertex, WheelRows const& rows) {
     for (Index edge : edges) add({edge, GetSignFrom(_coarse, edge, vertex)});
     for (int i = 0; i < faces.size(); ++i) {
         int const size = _coarse.GetFaceVertices(faces[i]).size();
-        for (int m = 1; m < size - 1; ++m) add(GetFaceSide(_coarse, faces[i], (corners[i] + m) % size));
+        for (int m = 1; m < size - 1; ++m)
+            add(GetFaceSide(_coarse, faces[i], (corners[i] + m) % size));
     }
 
     Index const child = _coarse.GetVertexChildVertex(vertex);
     for (int i = 0; i < edges.size(); ++i) {
-        WriteEdgeRow(rows.even[static_cast<size_t>(i)], child, _coarse.GetEdgeChildVertex(edges[i]), GetFineSpoke(vertex, edges[i]), isRepeated);
+        WriteEdgeRow(rows.even[static_cast<size_t>(i)], child, _coarse.GetEdgeChildVertex(edges[i]),
+                     GetFineSpoke(vertex, edges[i]), isRepeated);
     }
     for (int i = 0; i < faces.size(); ++i) {
         Index const fineFace = _coarse.GetFaceChildFaces(faces[i])[corners[i]];
         _s2.Start(fineFace);
-        for (auto const& [local, weight] : rows.children[static_cast<size_t>(i)]) _s2.Add(faces[local], weight);
+        for (auto const& [local, weight] : rows.children[static_cast<size_t>(i)])
+            _s2.Add(faces[local], weight);
         if (rows.odd.empty()) continue;
         WriteEdgeRow(rows.odd[static_cast<size_t>(i)], _coarse.GetEdgeChildVertex(edges[i]),
-                     _coarse.GetEdgeChildVertex(edges[(i + 1) % edges.size()]), _coarse.GetFaceChildEdges(faces[i])[corners[i]], isRepeated);
+                     _coarse.GetEdgeChildVertex(edges[(i + 1) % edges.size()]),
+                     _coarse.GetFaceChildEdges(faces[i])[corners[i]], isRepeated);
     }
 }
 
@@ -194,7 +215,8 @@ void FormStencilBuilder::WriteCentralChild(Index face) {
         Index const neighbour = GetNeighbour(face, edges[j]);
         _s2.Add(neighbour, 0.5 * p);
         isRepeated |= neighbour == face;
-        for (int i = 0; i < j; ++i) isRepeated |= FindShare(edges[i]) != 0.0 && GetNeighbour(face, edges[i]) == neighbour;
+        for (int i = 0; i < j; ++i)
+            isRepeated |= FindShare(edges[i]) != 0.0 && GetNeighbour(face, edges[i]) == neighbour;
     }
     _s2.Add(face, own);
     if (isRepeated) _s2.MarkRepeated(fineFace);
@@ -202,10 +224,13 @@ void FormStencilBuilder::WriteCentralChild(Index face) {
 
 void FormStencilBuilder::MeasureEdgesToCentre(Index face) {
     auto const edges = _coarse.GetFaceEdges(face);
-    auto const count = [](int size) { return static_cast<size_t>(size % 2 == 0 ? size - 2 : size - 1); };  // the side across has weight 0
+    auto const count = [](int size) {
+        return static_cast<size_t>(size % 2 == 0 ? size - 2 : size - 1);
+    };  // the side across has weight 0
     for (int j = 0; j < edges.size(); ++j) {
         size_t size = count(edges.size());
-        if (FindShare(edges[j]) != 0.0) size += count(_coarse.GetFaceVertices(GetNeighbour(face, edges[j])).size());
+        if (FindShare(edges[j]) != 0.0)
+            size += count(_coarse.GetFaceVertices(GetNeighbour(face, edges[j])).size());
         _s1.SetSize(_coarse.GetFaceChildEdges(face)[j], size);
     }
 }
@@ -224,7 +249,8 @@ void FormStencilBuilder::WriteEdgesToCentre(Index face) {
             for (int m = 1; m < size; ++m) {
                 if (2 * m == size) continue;
                 OrientedEdge const side = GetFaceSide(_coarse, f, (from + m) % size);
-                _s1.Add(side.edge, sign * weight * side.sign * (0.5 - static_cast<double>(m) / size));
+                _s1.Add(side.edge,
+                        sign * weight * side.sign * (0.5 - static_cast<double>(m) / size));
             }
         };
         addPath(face, j, 1.0 - q);
@@ -235,7 +261,8 @@ void FormStencilBuilder::WriteEdgesToCentre(Index face) {
         addPath(faces[other], places[other], -q);
         // Two faces may share more sides than this one.
         for (Index edge : _coarse.GetFaceEdges(faces[other])) {
-            if (std::count(edges.begin(), edges.end(), edge) + (faces[other] == face) > (edge == edges[j])) {
+            if (std::count(edges.begin(), edges.end(), edge) + (faces[other] == face) >
+                (edge == edges[j])) {
                 _s1.MarkRepeated(fineEdge);
                 break;
             }
@@ -244,7 +271,8 @@ void FormStencilBuilder::WriteEdgesToCentre(Index face) {
 }
 
 SparseRows Multiply(SparseRows const& a, SparseRows const& b, Index numColumns) {
-    Eigen::SparseMatrix<double, Eigen::RowMajor, int> product = AsMatrix(a, b.GetNumRows()) * AsMatrix(b, numColumns);
+    Eigen::SparseMatrix<double, Eigen::RowMajor, int> product =
+        AsMatrix(a, b.GetNumRows()) * AsMatrix(b, numColumns);
     product.makeCompressed();
     SparseRows result;
     result.offsets.assign(product.outerIndexPtr(), product.outerIndexPtr() + product.rows() + 1);
@@ -255,7 +283,9 @@ SparseRows Multiply(SparseRows const& a, SparseRows const& b, Index numColumns) 
 
 }  // namespace
 
-FormStencils BuildFormStencils(Far::TopologyRefiner const& refiner, int level) { return FormStencilBuilder(refiner, level).Build(); }
+FormStencils BuildFormStencils(Far::TopologyRefiner const& refiner, int level) {
+    return FormStencilBuilder(refiner, level).Build();
+}
 
 FormStencils ComposeFormStencils(Far::TopologyRefiner const& refiner, int level) {
     FormStencils total = BuildFormStencils(refiner, 1);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <opensubdiv/far/topologyRefiner.h>
@@ -7,14 +8,16 @@
 
 namespace limn::far_ext {
 
-/// One refinement of 1-forms and 2-forms beside OpenSubdiv's of 0-forms (S0): with d0 and d1 of both levels,
+/// One refinement of 1-forms and 2-forms beside OpenSubdiv's of 0-forms (S0): with d0 and d1 of
+/// both levels,
 ///     d0 S0 = S1 d0    and    d1 S1 = S2 d1
-/// hold to rounding. So the gradient of a subdivided function is the subdivided gradient, closed forms stay closed, and
-/// what flows round a face is never lost.
+/// hold to rounding. So the gradient of a subdivided function is the subdivided gradient, closed
+/// forms stay closed, and what flows round a face is never lost.
 ///
-/// Shape    S1: edges of the level x edges of the one before, S2: faces x faces; Far's numbering, form_operators.h's
-///          directions. Columns of S2 add up to 1, its weights are >= 0.
-/// Source   [Wang06] Sec. 4; forms.md 1 to 6. Valence 3 and boundaries as in forms.md, where the paper has others.
+/// Shape    S1: edges of the level x edges of the one before, S2: faces x faces; Far's numbering,
+///          form_operators.h's directions. Columns of S2 add up to 1, its weights are >= 0.
+/// Source   [Wang06] Sec. 4; forms.md 1 to 6. Valence 3 and boundaries as in forms.md, where the
+///          paper has others.
 struct FormStencils {
     SparseRows s1, s2;
 };
@@ -31,8 +34,8 @@ FormStencils BuildFormStencils(Far::TopologyRefiner const& refiner, int level);
 /// \throws Error  as BuildFormStencils
 FormStencils ComposeFormStencils(Far::TopologyRefiner const& refiner, int level);
 
-/// The rows as a stencil table in float, for OpenSubdiv's evaluators and limn's: one float per edge or face, or
-/// several forms side by side as one primvar.
+/// The rows as a stencil table in float, for OpenSubdiv's evaluators and limn's: one float per edge
+/// or face, or several forms side by side as one primvar.
 ///
 /// \param numColumns  edges or faces of the level before
 /// \throws Error      TooLarge: more than 2^31 entries

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/forms/form_wheel.h"
 
 #include <cmath>
@@ -11,17 +12,21 @@ using Chain = std::vector<double>;  // over the wheel's faces, or over its edges
 
 constexpr double kPi = std::numbers::pi;
 
-/// The circulant whose rows spread a 2-form over the corners of `count` faces round a vertex: forms.md 3.4 (Loop), 4
-/// (Doo-Sabin's weights).
+/// The circulant whose rows spread a 2-form over the corners of `count` faces round a vertex:
+/// forms.md 3.4 (Loop), 4 (Doo-Sabin's weights).
 std::vector<double> MakeCirculant(Sdc::SchemeType scheme, int count) {
     std::vector<double> c(static_cast<size_t>(count), 0.0);
     if (scheme == Sdc::SCHEME_CATMARK) {
         c[0] = (count + 5.0) / (4.0 * count);
-        for (int m = 1; m < count; ++m) c[static_cast<size_t>(m)] = (3.0 + 2.0 * std::cos(2.0 * kPi * m / count)) / (4.0 * count);
+        for (int m = 1; m < count; ++m)
+            c[static_cast<size_t>(m)] =
+                (3.0 + 2.0 * std::cos(2.0 * kPi * m / count)) / (4.0 * count);
         return c;
     }
     double const beta = count >= 6 ? 0.25 : 1.0 / (8.0 * (1.0 - std::cos(2.0 * kPi / count)));
-    auto const add = [&](int place, double weight) { c[static_cast<size_t>(((place % count) + count) % count)] += weight; };
+    auto const add = [&](int place, double weight) {
+        c[static_cast<size_t>(((place % count) + count) % count)] += weight;
+    };
     add(0, 0.75 - beta);
     for (int sign : {-1, 1}) {
         add(sign, 0.125);
@@ -42,14 +47,16 @@ std::vector<int> FindCuts(Wheel const& wheel, Wheel::Rule const& rule) {
     return cuts;
 }
 
-/// Adds one rule's share of s and mu. The products mu D are blended, not mu and D: only so do the columns of s add up to
-/// mu where faces differ in it, and the recursion for x closes.
-void AddShares(Sdc::SchemeType scheme, Wheel const& wheel, Wheel::Rule const& rule, std::vector<Chain>& spread, Chain& mu) {
+/// Adds one rule's share of s and mu. The products mu D are blended, not mu and D: only so do the
+/// columns of s add up to mu where faces differ in it, and the recursion for x closes.
+void AddShares(Sdc::SchemeType scheme, Wheel const& wheel, Wheel::Rule const& rule,
+               std::vector<Chain>& spread, Chain& mu) {
     int const k = wheel.GetNumFaces();
     bool const isLoop = scheme == Sdc::SCHEME_LOOP;
     auto const add = [&](int row, int column, double rowMu, double weight) {
         double const scale = isLoop ? rowMu : 1.0 / wheel.sizes[static_cast<size_t>(column)];
-        spread[static_cast<size_t>(row)][static_cast<size_t>(column)] += rule.share * scale * weight;
+        spread[static_cast<size_t>(row)][static_cast<size_t>(column)] +=
+            rule.share * scale * weight;
     };
     std::vector<int> const cuts = FindCuts(wheel, rule);
     if (cuts.empty()) {
@@ -70,7 +77,9 @@ void AddShares(Sdc::SchemeType scheme, Wheel const& wheel, Wheel::Rule const& ru
         for (int i = 0; i < size; ++i) {
             int const row = (first + i) % k;
             for (int j = 0; j < size; ++j) {
-                add(row, (first + j) % k, rowMu, c[static_cast<size_t>((j - i + 2 * size) % (2 * size))] + c[static_cast<size_t>((i + j + 1) % (2 * size))]);
+                add(row, (first + j) % k, rowMu,
+                    c[static_cast<size_t>((j - i + 2 * size) % (2 * size))] +
+                        c[static_cast<size_t>((i + j + 1) % (2 * size))]);
             }
             mu[static_cast<size_t>(row)] += rule.share * rowMu;
         }
@@ -87,7 +96,9 @@ void Centre(Wheel const& wheel, std::vector<Chain>& flow) {
             for (int i = 0; i < wheel.GetNumSpokes(); ++i) spokes.push_back(i);
         }
         for (int i : spokes) {
-            for (size_t j = 0; j < mean.size(); ++j) mean[j] += rule->share * flow[static_cast<size_t>(i)][j] / static_cast<double>(spokes.size());
+            for (size_t j = 0; j < mean.size(); ++j)
+                mean[j] += rule->share * flow[static_cast<size_t>(i)][j] /
+                           static_cast<double>(spokes.size());
         }
     }
     for (Chain& x : flow) {
@@ -117,22 +128,29 @@ public:
         int const k = _wheel.GetNumFaces();
         face = ((face % k) + k) % k;
         int const size = _wheel.sizes[static_cast<size_t>(face)];
-        if (m == 0) AddSpoke(face, weight);
-        else if (m == size - 1) AddSpoke(face + 1, -weight);
-        else _weights[static_cast<size_t>(_firstOuterSides[static_cast<size_t>(face)] + m - 1)] += weight;
+        if (m == 0)
+            AddSpoke(face, weight);
+        else if (m == size - 1)
+            AddSpoke(face + 1, -weight);
+        else
+            _weights[static_cast<size_t>(_firstOuterSides[static_cast<size_t>(face)] + m - 1)] +=
+                weight;
     }
 
     void AddBoundary(Chain const& faces) {
         for (int face = 0; face < _wheel.GetNumFaces(); ++face) {
             double const weight = faces[static_cast<size_t>(face)];
-            for (int m = 0; weight != 0.0 && m < _wheel.sizes[static_cast<size_t>(face)]; ++m) AddSide(face, m, weight);
+            for (int m = 0; weight != 0.0 && m < _wheel.sizes[static_cast<size_t>(face)]; ++m)
+                AddSide(face, m, weight);
         }
     }
 
     /// F(e, f) of forms.md 4, from the middle of side `from` to the centroid.
     void AddPathFromMiddle(int face, int from, double weight) {
-        int const k = _wheel.GetNumFaces(), size = _wheel.sizes[static_cast<size_t>(((face % k) + k) % k)];
-        for (int j = 1; j < size; ++j) AddSide(face, (from + j) % size, weight * (0.5 - static_cast<double>(j) / size));
+        int const k = _wheel.GetNumFaces(),
+                  size = _wheel.sizes[static_cast<size_t>(((face % k) + k) % k)];
+        for (int j = 1; j < size; ++j)
+            AddSide(face, (from + j) % size, weight * (0.5 - static_cast<double>(j) / size));
     }
 
     /// G(v, f): from the vertex to the centroid.
@@ -160,7 +178,8 @@ private:
 /// y_i: the curl part of the odd edge that cuts the corner of face i.
 Chain MakeOddCurl(Wheel const& wheel, Chain const& mu, int i) {
     int const k = wheel.GetNumFaces(), spokes = wheel.GetNumSpokes();
-    double const before = wheel.faceShares[static_cast<size_t>(i)], after = wheel.faceShares[static_cast<size_t>((i + 1) % spokes)];
+    double const before = wheel.faceShares[static_cast<size_t>(i)],
+                 after = wheel.faceShares[static_cast<size_t>((i + 1) % spokes)];
     Chain y(static_cast<size_t>(k), 0.0);
     y[static_cast<size_t>(i)] += mu[static_cast<size_t>(i)] - 0.25 * (before + after);
     if (before != 0.0) y[static_cast<size_t>((i + k - 1) % k)] += 0.25 * before;
@@ -168,7 +187,8 @@ Chain MakeOddCurl(Wheel const& wheel, Chain const& mu, int i) {
     return y;
 }
 
-/// Adds S0 of the middle of spoke i, less the part of the vertex itself: p at both neighbours, 1/2 - p at w_i.
+/// Adds S0 of the middle of spoke i, less the part of the vertex itself: p at both neighbours, 1/2
+/// - p at w_i.
 void AddMiddle(Wheel const& wheel, int i, double sign, EdgeChain& chain) {
     int const spokes = wheel.GetNumSpokes(), spoke = i % spokes;
     double const p = wheel.faceShares[static_cast<size_t>(spoke)];
@@ -181,7 +201,8 @@ void AddMiddle(Wheel const& wheel, int i, double sign, EdgeChain& chain) {
 EdgeChain MakeLoopEven(Wheel const& wheel, int i) {
     EdgeChain chain(wheel);
     AddMiddle(wheel, i, 1.0, chain);
-    for (int j = 0; j < wheel.GetNumSpokes(); ++j) chain.AddSpoke(j, -wheel.edgeWeights[static_cast<size_t>(j)]);
+    for (int j = 0; j < wheel.GetNumSpokes(); ++j)
+        chain.AddSpoke(j, -wheel.edgeWeights[static_cast<size_t>(j)]);
     return chain;
 }
 
@@ -195,8 +216,10 @@ EdgeChain MakeCatmarkEven(Wheel const& wheel, int i) {
         chain.AddPathFromMiddle(i, 0, q);
         chain.AddPathFromMiddle(before, wheel.sizes[static_cast<size_t>(before)] - 1, q);
     }
-    for (int j = 0; j < wheel.GetNumSpokes(); ++j) chain.AddSpoke(j, -wheel.edgeWeights[static_cast<size_t>(j)]);
-    for (int j = 0; wheel.faceWeight != 0.0 && j < wheel.GetNumFaces(); ++j) chain.AddPathFromCorner(j, -wheel.faceWeight);
+    for (int j = 0; j < wheel.GetNumSpokes(); ++j)
+        chain.AddSpoke(j, -wheel.edgeWeights[static_cast<size_t>(j)]);
+    for (int j = 0; wheel.faceWeight != 0.0 && j < wheel.GetNumFaces(); ++j)
+        chain.AddPathFromCorner(j, -wheel.faceWeight);
     return chain;
 }
 
@@ -236,16 +259,20 @@ WheelRows MakeWheelRows(Sdc::SchemeType scheme, Wheel const& wheel) {
     for (int i = 0; i < numFaces; ++i) {
         Chain const& s = rows.share[static_cast<size_t>(i)];
         Chain y(k, 0.0);
-        if (isLoop) y = MakeOddCurl(wheel, rows.mu, i);
-        else y[static_cast<size_t>(i)] = 1.0 / wheel.sizes[static_cast<size_t>(i)];
+        if (isLoop)
+            y = MakeOddCurl(wheel, rows.mu, i);
+        else
+            y[static_cast<size_t>(i)] = 1.0 / wheel.sizes[static_cast<size_t>(i)];
         Chain next = rows.flow.back();
         for (size_t j = 0; j < k; ++j) next[j] += y[j] - s[j];
         rows.children.push_back(EdgeChain::Compress(s));
         curls.push_back(std::move(y));
         if (i + 1 < numSpokes) rows.flow.push_back(std::move(next));
     }
-    if (wheel.isInterior) Centre(wheel, rows.flow);
-    else rows.flow.back().assign(k, 0.0);  // which it is, but for rounding
+    if (wheel.isInterior)
+        Centre(wheel, rows.flow);
+    else
+        rows.flow.back().assign(k, 0.0);  // which it is, but for rounding
 
     for (int i = 0; i < numSpokes; ++i) {
         EdgeChain chain = isLoop ? MakeLoopEven(wheel, i) : MakeCatmarkEven(wheel, i);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/forms/hodge_star.h"
 
 #include <algorithm>
@@ -10,7 +11,9 @@
 namespace limn::far_ext {
 
 HodgeStars FindHodgeStars(Far::TopologyLevel const& level, std::span<double const> positions) {
-    auto const at = [&](Index vertex) { return Eigen::Map<Eigen::Vector3d const>(&positions[3 * static_cast<size_t>(vertex)]); };
+    auto const at = [&](Index vertex) {
+        return Eigen::Map<Eigen::Vector3d const>(&positions[3 * static_cast<size_t>(vertex)]);
+    };
     HodgeStars stars;
     stars.edge.assign(static_cast<size_t>(level.GetNumEdges()), 0.0);
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
@@ -24,22 +27,29 @@ HodgeStars FindHodgeStars(Far::TopologyLevel const& level, std::span<double cons
             Eigen::Vector3d const a = at(vertices[j]), b = at(vertices[(j + 1) % size]);
             double const length = (b - a).norm();
             if (!(length > 0.0)) {
-                throw Error(ErrorCode::BadMesh, fmt::format("the edge from vertex {} to {} has no length; merge the two", vertices[j], vertices[(j + 1) % size]));
+                throw Error(
+                    ErrorCode::BadMesh,
+                    fmt::format("the edge from vertex {} to {} has no length; merge the two",
+                                vertices[j], vertices[(j + 1) % size]));
             }
             area += 0.5 * (a - centre).cross(b - centre).norm();
             longest = std::max(longest, length);
             if (size == 3) {
-                Eigen::Vector3d const p = a - at(vertices[(j + 2) % 3]), q = b - at(vertices[(j + 2) % 3]);
+                Eigen::Vector3d const p = a - at(vertices[(j + 2) % 3]),
+                                      q = b - at(vertices[(j + 2) % 3]);
                 stars.edge[edges[j]] += 0.5 * p.dot(q) / std::max(p.cross(q).norm(), 1e-300);
             } else {
                 stars.edge[edges[j]] += (0.5 * (a + b) - centre).norm() / length;
             }
         }
-        if (!(area > 1e-14 * longest * longest)) throw Error(ErrorCode::BadMesh, fmt::format("face {} has no area; remove it or move its vertices", face));
+        if (!(area > 1e-14 * longest * longest))
+            throw Error(ErrorCode::BadMesh,
+                        fmt::format("face {} has no area; remove it or move its vertices", face));
         stars.area.push_back(area);
     }
     double mean = 0.0;
-    for (double star : stars.edge) mean += std::max(star, 0.0) / static_cast<double>(stars.edge.size());
+    for (double star : stars.edge)
+        mean += std::max(star, 0.0) / static_cast<double>(stars.edge.size());
     for (double& star : stars.edge) star = std::max(star, 1e-3 * mean);
     return stars;
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/limit/corner_limit.h"
 
 #include <cmath>
@@ -20,8 +21,10 @@ WeightRow Compose(SparseRows const& weights, int row, std::vector<WeightRow> con
     return composed;
 }
 
-/// The corner of a patch: (1,4,1) x (1,4,1) / 36 of a bicubic B-spline, (6 + 6 x 1) / 12 of the box spline.
-WeightRow EvaluatePatchCorner(SparseRows const& patch, int corner, std::vector<WeightRow> const& points) {
+/// The corner of a patch: (1,4,1) x (1,4,1) / 36 of a bicubic B-spline, (6 + 6 x 1) / 12 of the box
+/// spline.
+WeightRow EvaluatePatchCorner(SparseRows const& patch, int corner,
+                              std::vector<WeightRow> const& points) {
     WeightRow limit;
     if (patch.GetNumRows() == 16) {
         constexpr int kPlace[4][2] = {{1, 1}, {1, 2}, {2, 2}, {2, 1}};  // row t, column s
@@ -36,25 +39,31 @@ WeightRow EvaluatePatchCorner(SparseRows const& patch, int corner, std::vector<W
     }
     constexpr int kPlace[3][2] = {{0, 0}, {1, 0}, {0, 1}};
     for (int row = 0; row < 12; ++row) {
-        int const di = kBoxSplineLattice[row][0] - kPlace[corner][0], dj = kBoxSplineLattice[row][1] - kPlace[corner][1];
+        int const di = kBoxSplineLattice[row][0] - kPlace[corner][0],
+                  dj = kBoxSplineLattice[row][1] - kPlace[corner][1];
         // Lattice neighbours are (+-1,0), (0,+-1), (1,-1), (-1,1).
         bool const isNear = std::abs(di) <= 1 && std::abs(dj) <= 1 && std::abs(di + dj) <= 1;
-        if (isNear) limit.AddWithWeight(Compose(patch, row, points), di == 0 && dj == 0 ? 0.5 : 1.0 / 12.0);
+        if (isNear)
+            limit.AddWithWeight(Compose(patch, row, points), di == 0 && dj == 0 ? 0.5 : 1.0 / 12.0);
     }
     return limit;
 }
 
-/// Row `point` of the infinite power of a stationary step. Every mode but the constant one shrinks by at least
-/// 0.66 per step (valence without bound), so that the 128th power is the limit to the last digit.
-WeightRow FindStationaryLimit(SparseRows const& step, Index point, std::vector<WeightRow> const& points) {
+/// Row `point` of the infinite power of a stationary step. Every mode but the constant one shrinks
+/// by at least 0.66 per step (valence without bound), so that the 128th power is the limit to the
+/// last digit.
+WeightRow FindStationaryLimit(SparseRows const& step, Index point,
+                              std::vector<WeightRow> const& points) {
     int const size = step.GetNumRows();
     Eigen::MatrixXd power = Eigen::MatrixXd::Zero(size, size);
     for (int row = 0; row < size; ++row) {
-        for (int k = step.offsets[row]; k < step.offsets[row + 1]; ++k) power(row, step.indices[k]) += step.weights[k];
+        for (int k = step.offsets[row]; k < step.offsets[row + 1]; ++k)
+            power(row, step.indices[k]) += step.weights[k];
     }
     for (int doubling = 0; doubling < 7; ++doubling) power = (power * power).eval();
     WeightRow limit;
-    for (int column = 0; column < size; ++column) limit.AddWithWeight(points[column], power(point, column));
+    for (int column = 0; column < size; ++column)
+        limit.AddWithWeight(points[column], power(point, column));
     return limit;
 }
 
@@ -69,22 +78,28 @@ WeightRow Prune(WeightRow const& row) {
 
 }  // namespace
 
-WeightRow BuildCornerLimit(FaceRing const& base, int corner, Sdc::SchemeType scheme, Sdc::Options options) {
-    // Sharpness decays within 10 steps, the ring repeats soon after; where it never does (non-manifold
-    // vertices), this many steps are the limit as far as doubles can tell.
+WeightRow BuildCornerLimit(FaceRing const& base, int corner, Sdc::SchemeType scheme,
+                           Sdc::Options options) {
+    // Sharpness decays within 10 steps, the ring repeats soon after; where it never does
+    // (non-manifold vertices), this many steps are the limit as far as doubles can tell.
     constexpr int kMaxSteps = 64;
     FaceRing ring = base;
-    std::vector<WeightRow> points = WeightRow::Identity(ring.numPoints);  // of `ring`, over those of `base`
+    std::vector<WeightRow> points =
+        WeightRow::Identity(ring.numPoints);  // of `ring`, over those of `base`
     for (int stepCount = 0; stepCount < kMaxSteps; ++stepCount) {
         RingSubdivision const subdivision = RingSubdivision::Build(ring, scheme, options);
-        if (subdivision.IsRegular()) return Prune(EvaluatePatchCorner(subdivision.patch, corner, points));
+        if (subdivision.IsRegular())
+            return Prune(EvaluatePatchCorner(subdivision.patch, corner, points));
         RingSubdivision::Child const& child = subdivision.children[corner];
-        // OpenSubdiv numbers a child's corners like its parent's, those of a polygon's child from the vertex.
+        // OpenSubdiv numbers a child's corners like its parent's, those of a polygon's child from
+        // the vertex.
         bool const isRenumbered = scheme != Sdc::SCHEME_LOOP && ring.faceSizes[0] != 4;
         corner = isRenumbered ? 0 : corner;
-        if (child.ring == ring) return Prune(FindStationaryLimit(child.weights, ring.faceVertices[corner], points));
+        if (child.ring == ring)
+            return Prune(FindStationaryLimit(child.weights, ring.faceVertices[corner], points));
         std::vector<WeightRow> childPoints;
-        for (int row = 0; row < child.weights.GetNumRows(); ++row) childPoints.push_back(Compose(child.weights, row, points));
+        for (int row = 0; row < child.weights.GetNumRows(); ++row)
+            childPoints.push_back(Compose(child.weights, row, points));
         points = std::move(childPoints);
         ring = child.ring;
     }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/limit/limit_matrix.h"
 
 #include <limits>
@@ -8,7 +9,8 @@
 
 namespace limn::far_ext {
 
-LimitMatrix LimitMatrix::Build(Far::TopologyRefiner const& refiner, int level, LimitOptions const& options) {
+LimitMatrix LimitMatrix::Build(Far::TopologyRefiner const& refiner, int level,
+                               LimitOptions const& options) {
     LimitRowBuilder builder(refiner, level, options);
     Index const numVertices = builder.GetNumVertices();
     size_t const size = static_cast<size_t>(numVertices);
@@ -37,7 +39,9 @@ LimitMatrix LimitMatrix::Build(Far::TopologyRefiner const& refiner, int level, L
         add(vertex, row.centre);
         for (size_t k = 0; k < row.indices.size(); ++k) add(row.indices[k], row.GetWeight(k));
         if (indices.size() > static_cast<size_t>(std::numeric_limits<int>::max())) {
-            throw Error(ErrorCode::TooLarge, fmt::format("the limit matrix of {} vertices passes 2^31 entries", numVertices));
+            throw Error(
+                ErrorCode::TooLarge,
+                fmt::format("the limit matrix of {} vertices passes 2^31 entries", numVertices));
         }
         offsets.push_back(static_cast<int>(indices.size()));
         matrix._sizes.push_back(offsets.back() - start);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/limit/limit_row.h"
 
 #include <algorithm>
@@ -6,46 +7,55 @@
 
 #include <fmt/format.h>
 
-#include "far_ext/limit/corner_limit.h"
 #include "far_ext/error.h"
+#include "far_ext/limit/corner_limit.h"
 
 namespace limn::far_ext {
 
-LimitRowBuilder::LimitRowBuilder(Far::TopologyRefiner const& refiner, int level, LimitOptions const& options)
+LimitRowBuilder::LimitRowBuilder(Far::TopologyRefiner const& refiner, int level,
+                                 LimitOptions const& options)
     : _refiner(refiner), _level(refiner.GetLevel(level)), _options(options) {
     if (!(options.alpha >= 0.0 && options.alpha <= 1.0)) {
-        throw Error(ErrorCode::BadOption, fmt::format("alpha {} is not from 0 to 1", options.alpha));
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("alpha {} is not from 0 to 1", options.alpha));
     }
     if (options.alpha != 0.0 && refiner.GetSchemeType() != Sdc::SCHEME_CATMARK) {
-        throw Error(ErrorCode::BadOption, "alpha is a parameter of the catmark scheme; the others have none");
+        throw Error(ErrorCode::BadOption,
+                    "alpha is a parameter of the catmark scheme; the others have none");
     }
 }
 
 bool LimitRowBuilder::HasLimit(Index vertex) const {
     auto const faces = _level.GetVertexFaces(vertex);
-    return std::any_of(faces.begin(), faces.end(), [&](Index face) { return !_level.IsFaceHole(face); });
+    return std::any_of(faces.begin(), faces.end(),
+                       [&](Index face) { return !_level.IsFaceHole(face); });
 }
 
 LimitRow::Kind LimitRowBuilder::Classify(Index vertex) const {
     using Kind = LimitRow::Kind;
     if (_refiner.GetSchemeType() == Sdc::SCHEME_BILINEAR || !HasLimit(vertex)) return Kind::Fixed;
     bool const isManifold = !_level.IsVertexNonManifold(vertex);
-    if (_level.GetVertexRule(vertex) == Sdc::Crease::RULE_SMOOTH && isManifold && !_level.IsVertexBoundary(vertex)) {
-        bool const hasOwnTriangleRule = _refiner.GetSchemeType() == Sdc::SCHEME_CATMARK &&
-                                        _refiner.GetSchemeOptions().GetTriangleSubdivision() == Sdc::Options::TRI_SUB_SMOOTH;
+    if (_level.GetVertexRule(vertex) == Sdc::Crease::RULE_SMOOTH && isManifold &&
+        !_level.IsVertexBoundary(vertex)) {
+        bool const hasOwnTriangleRule =
+            _refiner.GetSchemeType() == Sdc::SCHEME_CATMARK &&
+            _refiner.GetSchemeOptions().GetTriangleSubdivision() == Sdc::Options::TRI_SUB_SMOOTH;
         auto const faces = _level.GetVertexFaces(vertex);
-        bool const isClosedForm = !hasOwnTriangleRule || std::none_of(faces.begin(), faces.end(), [&](Index face) {
-            return _level.GetFaceVertices(face).size() == 3;
-        });
+        bool const isClosedForm =
+            !hasOwnTriangleRule || std::none_of(faces.begin(), faces.end(), [&](Index face) {
+                return _level.GetFaceVertices(face).size() == 3;
+            });
         return isClosedForm ? Kind::Smooth : Kind::Other;
     }
     if (_level.IsVertexInfSharp(vertex)) return Kind::Fixed;
     if (!isManifold) return Kind::Other;
     auto const edges = _level.GetVertexEdges(vertex);
-    auto const numSharp = std::count_if(edges.begin(), edges.end(), [&](Index e) { return _level.IsEdgeInfSharp(e); });
+    auto const numSharp = std::count_if(edges.begin(), edges.end(),
+                                        [&](Index e) { return _level.IsEdgeInfSharp(e); });
     if (numSharp > 2) return Kind::Fixed;
-    bool const isSemiSharp = _level.IsVertexSemiSharp(vertex) ||
-                             std::any_of(edges.begin(), edges.end(), [&](Index e) { return _level.IsEdgeSemiSharp(e); });
+    bool const isSemiSharp =
+        _level.IsVertexSemiSharp(vertex) ||
+        std::any_of(edges.begin(), edges.end(), [&](Index e) { return _level.IsEdgeSemiSharp(e); });
     return numSharp == 2 && !isSemiSharp ? Kind::Curve : Kind::Other;
 }
 
@@ -58,11 +68,15 @@ void LimitRowBuilder::Build(Index vertex, LimitRow& row) {
     row.edge = row.other = 0.0;
     row.isEvenCubic = false;
     switch (row.kind) {
-        case LimitRow::Kind::Fixed: return;
-        case LimitRow::Kind::Curve: return BuildCurve(vertex, row);
+        case LimitRow::Kind::Fixed:
+            return;
+        case LimitRow::Kind::Curve:
+            return BuildCurve(vertex, row);
         case LimitRow::Kind::Smooth:
-            return _refiner.GetSchemeType() == Sdc::SCHEME_LOOP ? BuildLoop(vertex, row) : BuildCatmark(vertex, row);
-        case LimitRow::Kind::Other: return BuildOther(vertex, row);
+            return _refiner.GetSchemeType() == Sdc::SCHEME_LOOP ? BuildLoop(vertex, row)
+                                                                : BuildCatmark(vertex, row);
+        case LimitRow::Kind::Other:
+            return BuildOther(vertex, row);
     }
 }
 
@@ -100,7 +114,8 @@ void LimitRowBuilder::BuildCatmark(Index vertex, LimitRow& row) const {
             bool const isEdge = k == 1 || k == size - 1;
             if (isUniform && isEdge) continue;
             if (isEdge) {
-                auto const edge = std::find(row.indices.begin(), row.indices.begin() + row.numEdges, at);
+                auto const edge =
+                    std::find(row.indices.begin(), row.indices.begin() + row.numEdges, at);
                 row.weights[static_cast<size_t>(edge - row.indices.begin())] += g / size;
                 continue;
             }
@@ -122,12 +137,14 @@ void LimitRowBuilder::BuildLoop(Index vertex, LimitRow& row) {
     if (_loopChi.size() <= n) _loopChi.resize(n + 1, 0.0);
     double& chi = _loopChi[n];
     if (chi == 0.0) {
-        double const inner = 0.375 + 0.25 * std::cos(2.0 * std::numbers::pi / static_cast<double>(n));
+        double const inner =
+            0.375 + 0.25 * std::cos(2.0 * std::numbers::pi / static_cast<double>(n));
         double const beta = (0.625 - inner * inner) / static_cast<double>(n);
         // Which cosine glibc runs depends on the CPU: rounded, the weights are the same everywhere.
         chi = std::nearbyint(0x1p44 / (static_cast<double>(n) + 0.375 / beta)) / 0x1p44;
     }
-    for (int i = 0; i < faces.size(); ++i) row.indices.push_back(_level.GetFaceVertices(faces[i])[(corners[i] + 1) % 3]);
+    for (int i = 0; i < faces.size(); ++i)
+        row.indices.push_back(_level.GetFaceVertices(faces[i])[(corners[i] + 1) % 3]);
     row.numEdges = faces.size();
     row.scale = 1.0 / chi;
     row.edge = chi;
@@ -148,14 +165,16 @@ void LimitRowBuilder::BuildCurve(Index vertex, LimitRow& row) const {
 void LimitRowBuilder::BuildOther(Index vertex, LimitRow& row) {
     if (!_gatherer) _gatherer = std::make_unique<FaceRingGatherer>(_level, -1);
     auto const faces = _level.GetVertexFaces(vertex);
-    auto const found = std::find_if(faces.begin(), faces.end(), [&](Index face) { return !_level.IsFaceHole(face); });
-    CornerKey key{{}, _level.GetVertexFaceLocalIndices(vertex)[static_cast<int>(found - faces.begin())]};
+    auto const found = std::find_if(faces.begin(), faces.end(),
+                                    [&](Index face) { return !_level.IsFaceHole(face); });
+    CornerKey key{
+        {}, _level.GetVertexFaceLocalIndices(vertex)[static_cast<int>(found - faces.begin())]};
     std::vector<Index> points;
     _gatherer->Gather(*found, key.ring, points);
     auto const [known, isNew] = _corners.try_emplace(std::move(key));
     if (isNew) {
-        known->second = BuildCornerLimit(known->first.ring, known->first.corner, _refiner.GetSchemeType(),
-                                         _refiner.GetSchemeOptions());
+        known->second = BuildCornerLimit(known->first.ring, known->first.corner,
+                                         _refiner.GetSchemeType(), _refiner.GetSchemeOptions());
     }
     row.centre = 0.0;
     for (auto const& [point, weight] : known->second.GetEntries()) {

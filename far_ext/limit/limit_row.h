@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -9,10 +10,11 @@
 
 namespace limn::far_ext {
 
-/// Generalised Catmull-Clark: the vertex rule (n-2)/n V + (1/n^2) sum [alpha V + (1-alpha) E] + (1/n^2) sum F',
-/// at smooth interior vertices; 0 is Catmull-Clark.
+/// Generalised Catmull-Clark: the vertex rule (n-2)/n V + (1/n^2) sum [alpha V + (1-alpha) E] +
+/// (1/n^2) sum F', at smooth interior vertices; 0 is Catmull-Clark.
 ///
-/// Source  [LaiCheng11] Appendix A. The paper's matrix is that of FirstStep; Stationary has its own.
+/// Source  [LaiCheng11] Appendix A. The paper's matrix is that of FirstStep; Stationary has its
+///         own.
 struct LimitOptions {
     enum class AlphaRule {
         FirstStep,  ///< alpha in the first refinement, plain Catmull-Clark afterwards
@@ -22,25 +24,27 @@ struct LimitOptions {
     AlphaRule alphaRule = AlphaRule::FirstStep;
 };
 
-/// One row of the limit matrix A: the limit point of a vertex as weights over the vertex itself, its edge
-/// neighbours and the other vertices of its faces.
+/// One row of the limit matrix A: the limit point of a vertex as weights over the vertex itself,
+/// its edge neighbours and the other vertices of its faces.
 struct LimitRow {
     enum class Kind : unsigned char {
-        Fixed,   ///< the vertex is its own limit: a sharp corner, or no face round it has a limit surface
+        Fixed,   ///< the vertex is its own limit: a sharp corner, or no face round it has a limit
+                 ///< surface
         Curve,   ///< on a boundary or an infinitely sharp crease: only the curve counts
         Smooth,  ///< the closed form of a smooth interior vertex
         Other    ///< by OpenSubdiv's rules: semi-sharp, dart, non-manifold
     };
 
     Kind kind = Kind::Fixed;
-    int numEdges = 0;  ///< so many of `indices` are edge neighbours (smooth and curve rows)
+    int numEdges = 0;    ///< so many of `indices` are edge neighbours (smooth and curve rows)
     double scale = 1.0;  ///< row of D; D A is symmetric among smooth rows
-    bool isEvenCubic = false;  ///< smooth, valence 3, all faces with an even number of sides, alpha 0
+    bool isEvenCubic =
+        false;  ///< smooth, valence 3, all faces with an even number of sides, alpha 0
 
-    double centre = 1.0;               ///< weight of the vertex itself
-    double edge = 0.0, other = 0.0;    ///< weights of all others, where `weights` is empty
-    std::vector<Index> indices;        ///< edge neighbours first; one may come twice
-    std::vector<double> weights;       ///< one per index, or empty
+    double centre = 1.0;             ///< weight of the vertex itself
+    double edge = 0.0, other = 0.0;  ///< weights of all others, where `weights` is empty
+    std::vector<Index> indices;      ///< edge neighbours first; one may come twice
+    std::vector<double> weights;     ///< one per index, or empty
 
     bool IsUniform() const { return weights.empty(); }
     double GetWeight(size_t k) const {
@@ -52,14 +56,15 @@ struct LimitRow {
 /// Makes the rows of A of one level, straight from its topology.
 ///
 /// Order    any; asking for the vertices in order reads memory in order.
-/// Exact    where OpenSubdiv's Limit is not: interior vertices of valence 2, and darts (Limit takes their mask
-///          for that of a smooth vertex).
+/// Exact    where OpenSubdiv's Limit is not: interior vertices of valence 2, and darts (Limit takes
+///          their mask for that of a smooth vertex).
 /// Source   surface.md 1.1 = one refinement followed by the limit mask; checked against OpenSubdiv.
 class LimitRowBuilder {
 public:
     /// \param refiner  kept by reference; its level with all relations (a base level has them)
     /// \throws Error   BadOption: alpha outside [0, 1], or with another scheme than Catmull-Clark
-    LimitRowBuilder(Far::TopologyRefiner const& refiner, int level, LimitOptions const& options = {});
+    LimitRowBuilder(Far::TopologyRefiner const& refiner, int level,
+                    LimitOptions const& options = {});
 
     void Build(Index vertex, LimitRow& row);
 
@@ -72,7 +77,9 @@ private:
         bool operator==(CornerKey const&) const = default;
     };
     struct CornerHash {
-        size_t operator()(CornerKey const& key) const { return key.ring.Hash() + static_cast<size_t>(key.corner); }
+        size_t operator()(CornerKey const& key) const {
+            return key.ring.Hash() + static_cast<size_t>(key.corner);
+        }
     };
 
     LimitRow::Kind Classify(Index vertex) const;

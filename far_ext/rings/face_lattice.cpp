@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/rings/face_lattice.h"
 
 #include <algorithm>
@@ -16,7 +17,8 @@ void SortByBoundary(Far::TopologyRefiner const& refiner, int depth, FaceLattice&
     Level const base = refiner.GetLevel(0);
     std::vector<char> isInside(lattice.places.size(), 1);
     auto const descend = [&](int level, Index vertex) {
-        for (; level < depth; ++level) vertex = refiner.GetLevel(level).GetVertexChildVertex(vertex);
+        for (; level < depth; ++level)
+            vertex = refiner.GetLevel(level).GetVertexChildVertex(vertex);
         isInside[vertex] = 0;
         return vertex;
     };
@@ -27,8 +29,10 @@ void SortByBoundary(Far::TopologyRefiner const& refiner, int depth, FaceLattice&
         for (int level = 0; level < depth; ++level) {
             std::vector<Index> halves;
             for (Index piece : pieces) {
-                points.push_back(descend(level + 1, refiner.GetLevel(level).GetEdgeChildVertex(piece)));
-                for (Index half : refiner.GetLevel(level).GetEdgeChildEdges(piece)) halves.push_back(half);
+                points.push_back(
+                    descend(level + 1, refiner.GetLevel(level).GetEdgeChildVertex(piece)));
+                for (Index half : refiner.GetLevel(level).GetEdgeChildEdges(piece))
+                    halves.push_back(half);
             }
             pieces = std::move(halves);
         }
@@ -57,7 +61,8 @@ FaceLattice LatticeCache::Build(int size, int depth) {
     face.numVertsPerFace = &size;
     face.vertIndicesPerFace = corners.data();
     using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-    std::unique_ptr<Far::TopologyRefiner> const refiner(Factory::Create(face, Factory::Options(_scheme)));
+    std::unique_ptr<Far::TopologyRefiner> const refiner(
+        Factory::Create(face, Factory::Options(_scheme)));
     refiner->RefineUniform(Far::TopologyRefiner::UniformOptions(depth));
 
     FaceLattice lattice;
@@ -74,7 +79,8 @@ FaceLattice LatticeCache::Build(int size, int depth) {
     return lattice;
 }
 
-void LatticeCache::AddChildren(Far::TopologyRefiner const& refiner, int depth, FaceLattice& lattice) {
+void LatticeCache::AddChildren(Far::TopologyRefiner const& refiner, int depth,
+                               FaceLattice& lattice) {
     Level const fine = refiner.GetLevel(depth);
     auto const children = refiner.GetLevel(0).GetFaceChildFaces(0);
     int const perChild = fine.GetNumFaces() / children.size();

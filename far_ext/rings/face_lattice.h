@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <map>
@@ -22,10 +23,10 @@ struct FaceLattice {
         std::vector<int> pointOfRow;  ///< of this lattice, per point of the child's own lattice
         int size;                     ///< corners of the child
     };
-    std::vector<Place> places;                ///< per point
-    std::vector<int> inside;                  ///< points within the face, in OpenSubdiv's order
-    std::vector<std::vector<int>> onEdge;     ///< per edge, without its ends
-    std::vector<int> atCorner;                ///< per corner
+    std::vector<Place> places;             ///< per point
+    std::vector<int> inside;               ///< points within the face, in OpenSubdiv's order
+    std::vector<std::vector<int>> onEdge;  ///< per edge, without its ends
+    std::vector<int> atCorner;             ///< per corner
     std::vector<Child> children;
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/rings/face_ring.h"
 
 #include <algorithm>
@@ -14,7 +15,9 @@ namespace limn::far_ext {
 
 size_t FaceRing::Hash() const {
     uint64_t hash = 0x9e3779b97f4a7c15u;
-    auto const add = [&](uint64_t value) { hash = std::rotl(hash ^ value, 23) * 0xd6e8feb86659fd93u; };
+    auto const add = [&](uint64_t value) {
+        hash = std::rotl(hash ^ value, 23) * 0xd6e8feb86659fd93u;
+    };
     for (int size : faceSizes) add(static_cast<uint64_t>(size));
     for (Index vertex : faceVertices) add(static_cast<uint64_t>(vertex));
     for (Index value : valueIndices) add(static_cast<uint64_t>(value));
@@ -44,7 +47,9 @@ void FaceRingGatherer::NumberFaces(Index face) {
 int FaceRingGatherer::FindStart(Far::ConstIndexArray vertices) const {
     if (_starts == Starts::AsInLevel) return 0;
     int start = 0;
-    auto const rank = [&](int corner) { return static_cast<unsigned>(_vertices[vertices[corner]]); };  // -1 last
+    auto const rank = [&](int corner) {
+        return static_cast<unsigned>(_vertices[vertices[corner]]);
+    };  // -1 last
     for (int i = 1; i < vertices.size(); ++i) {
         if (rank(i) < rank(start)) start = i;
     }
@@ -55,8 +60,8 @@ void FaceRingGatherer::GatherPoints(Index face, std::vector<Index>& points) {
     NumberFaces(face);
     Numbering& numbering = _channel >= 0 ? _values : _vertices;
     for (Index inRing : _faces.GetMembers()) {
-        auto const corners =
-            _channel >= 0 ? _level.GetFaceFVarValues(inRing, _channel) : _level.GetFaceVertices(inRing);
+        auto const corners = _channel >= 0 ? _level.GetFaceFVarValues(inRing, _channel)
+                                           : _level.GetFaceVertices(inRing);
         for (Index point : corners) numbering.Add(point);
     }
     points = numbering.GetMembers();
@@ -97,7 +102,8 @@ void FaceRingGatherer::Gather(Index face, FaceRing& ring, std::vector<Index>& po
         ring.faceSizes.push_back(size);
         add(vertices, _vertices, ring.faceVertices);
         add(_level.GetFaceEdges(inRing), _edges, ring.faceEdges);
-        if (_channel >= 0) add(_level.GetFaceFVarValues(inRing, _channel), _values, ring.valueIndices);
+        if (_channel >= 0)
+            add(_level.GetFaceFVarValues(inRing, _channel), _values, ring.valueIndices);
     }
     ring.numVertices = static_cast<Index>(_vertices.GetMembers().size());
     points = (_channel >= 0 ? _values : _vertices).GetMembers();
@@ -183,11 +189,14 @@ bool TopologyRefinerFactory<RingTopology>::resizeComponentTopology(TopologyRefin
                             static_cast<int>(topology.edgeFaces[edge].size()));
     }
     for (Index vertex = 0; vertex < ring.numVertices; ++vertex) {
-        setNumBaseVertexFaces(refiner, vertex, static_cast<int>(topology.vertexFaces[vertex].size()));
-        // OpenSubdiv sizes buffers for a vertex' faces by the largest number of edges it has heard of; where
-        // edges have three faces and more, a vertex has fewer edges than faces.
-        setNumBaseVertexEdges(refiner, vertex, static_cast<int>(topology.vertexFaces[vertex].size()));
-        setNumBaseVertexEdges(refiner, vertex, static_cast<int>(topology.vertexEdges[vertex].size()));
+        setNumBaseVertexFaces(refiner, vertex,
+                              static_cast<int>(topology.vertexFaces[vertex].size()));
+        // OpenSubdiv sizes buffers for a vertex' faces by the largest number of edges it has heard
+        // of; where edges have three faces and more, a vertex has fewer edges than faces.
+        setNumBaseVertexEdges(refiner, vertex,
+                              static_cast<int>(topology.vertexFaces[vertex].size()));
+        setNumBaseVertexEdges(refiner, vertex,
+                              static_cast<int>(topology.vertexEdges[vertex].size()));
     }
     return true;
 }
@@ -196,7 +205,9 @@ template <>
 bool TopologyRefinerFactory<RingTopology>::assignComponentTopology(TopologyRefiner& refiner,
                                                                    RingTopology const& topology) {
     auto const& ring = topology.ring;
-    auto const copy = [](auto const& from, IndexArray to) { std::copy(from.begin(), from.end(), to.begin()); };
+    auto const copy = [](auto const& from, IndexArray to) {
+        std::copy(from.begin(), from.end(), to.begin());
+    };
     auto vertex = ring.faceVertices.begin();
     auto edge = ring.faceEdges.begin();
     for (Index face = 0; face < static_cast<Index>(ring.faceSizes.size()); ++face) {
@@ -245,7 +256,8 @@ bool TopologyRefinerFactory<RingTopology>::assignFaceVaryingTopology(TopologyRef
     int const channel = createBaseFVarChannel(refiner, ring.numPoints);
     auto value = ring.valueIndices.begin();
     for (Index face = 0; face < static_cast<Index>(ring.faceSizes.size()); ++face) {
-        std::copy_n(value, ring.faceSizes[face], getBaseFaceFVarValues(refiner, face, channel).begin());
+        std::copy_n(value, ring.faceSizes[face],
+                    getBaseFaceFVarValues(refiner, face, channel).begin());
         value += ring.faceSizes[face];
     }
     return true;
@@ -257,7 +269,8 @@ bool TopologyRefinerFactory<RingTopology>::assignFaceVaryingTopology(TopologyRef
 
 namespace limn::far_ext {
 
-std::unique_ptr<Far::TopologyRefiner> CreateRingRefiner(FaceRing const& ring, Sdc::SchemeType scheme,
+std::unique_ptr<Far::TopologyRefiner> CreateRingRefiner(FaceRing const& ring,
+                                                        Sdc::SchemeType scheme,
                                                         Sdc::Options options) {
     using Factory = Far::TopologyRefinerFactory<RingTopology>;
     options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -13,10 +14,10 @@ namespace limn::far_ext {
 /// A face with all faces that share a vertex with it, renumbered locally: everything its limit
 /// surface depends on. Two faces with equal rings have equal subdivision matrices.
 ///
-/// Order    Face 0 is the face itself, then the faces round its corner 0, 1, ..., each time starting
-///          after the face, so that alike surroundings get equal rings. Vertices, edges and values
-///          are numbered by first appearance; 0..size-1 are the face's own corners unless it
-///          repeats one.
+/// Order    Face 0 is the face itself, then the faces round its corner 0, 1, ..., each time
+///          starting after the face, so that alike surroundings get equal rings. Vertices, edges
+///          and values are numbered by first appearance; 0..size-1 are the face's own corners
+///          unless it repeats one.
 /// Edges    are told explicitly: at a vertex of valence 2, or beside a face that repeats a corner,
 ///          two edges can join the same two vertices, and face lists alone would merge them.
 struct FaceRing {
@@ -53,14 +54,16 @@ struct FaceRing {
 /// Collects rings from one level. Keeps scratch of the level's size: one per thread and level.
 class FaceRingGatherer {
 public:
-    /// With which corner the faces round the face start, and which way edges point: as in the level; or
-    /// with the corner numbered first, and to the higher number, so that rings which differ in nothing else
-    /// become equal. (Sums over a ring's points are then taken in another order.)
+    /// With which corner the faces round the face start, and which way edges point: as in the
+    /// level; or with the corner numbered first, and to the higher number, so that rings which
+    /// differ in nothing else become equal. (Sums over a ring's points are then taken in another
+    /// order.)
     enum class Starts { AsInLevel, Canonical };
 
     /// \param level    topology with all relations (a base level, or a refined one asked for them)
     /// \param channel  face-varying channel, or -1 for vertices
-    FaceRingGatherer(Far::TopologyLevel const& level, int channel, Starts starts = Starts::AsInLevel);
+    FaceRingGatherer(Far::TopologyLevel const& level, int channel,
+                     Starts starts = Starts::AsInLevel);
 
     /// The ring of a face, and for each of its points the level's vertex (or value) index.
     void Gather(Index face, FaceRing& ring, std::vector<Index>& points);
@@ -104,7 +107,8 @@ private:
 /// Builds a ring's own refiner, with the boundary rule EDGE_ONLY: the ring's rim adds no sharpness.
 ///
 /// \throws Error  BadMesh where OpenSubdiv refuses the topology
-std::unique_ptr<Far::TopologyRefiner> CreateRingRefiner(FaceRing const& ring, Sdc::SchemeType scheme,
+std::unique_ptr<Far::TopologyRefiner> CreateRingRefiner(FaceRing const& ring,
+                                                        Sdc::SchemeType scheme,
                                                         Sdc::Options options);
 
 }  // namespace limn::far_ext

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/rings/ring_subdivision.h"
 
 #include <algorithm>
@@ -5,7 +6,6 @@
 #include <memory>
 
 #include <opensubdiv/far/primvarRefiner.h>
-
 
 namespace limn::far_ext {
 
@@ -44,7 +44,8 @@ void RoundToPortableWeights(WeightRow& row) {
     row = rounded;
 }
 
-std::vector<WeightRow> RefineIdentity(FaceRing const& ring, Far::TopologyRefiner const& refiner, bool isVarying) {
+std::vector<WeightRow> RefineIdentity(FaceRing const& ring, Far::TopologyRefiner const& refiner,
+                                      bool isVarying) {
     Far::PrimvarRefinerReal<double> const primvars(refiner);
     Level const fine = refiner.GetLevel(1);
     auto const coarseRows = WeightRow::Identity(ring.numPoints);
@@ -54,7 +55,8 @@ std::vector<WeightRow> RefineIdentity(FaceRing const& ring, Far::TopologyRefiner
         primvars.InterpolateFaceVarying(1, coarseRows, rows, 0);
     } else {
         rows.resize(static_cast<size_t>(fine.GetNumVertices()));
-        isVarying ? primvars.InterpolateVarying(1, coarseRows, rows) : primvars.Interpolate(1, coarseRows, rows);
+        isVarying ? primvars.InterpolateVarying(1, coarseRows, rows)
+                  : primvars.Interpolate(1, coarseRows, rows);
     }
     if (refiner.GetSchemeType() == Sdc::SCHEME_LOOP) {
         for (WeightRow& row : rows) RoundToPortableWeights(row);
@@ -121,7 +123,8 @@ private:
             if (other == face) continue;
             for (int i = 0; i < _ring.faceSizes[other]; ++i) {
                 if (_ring.faceEdges[_firstCorner[other] + i] != shared) continue;
-                if (found.Exists() || Point(other, i) != to || Point(other, i + 1) != from) return {};
+                if (found.Exists() || Point(other, i) != to || Point(other, i + 1) != from)
+                    return {};
                 found = {other, i};
             }
         }
@@ -143,9 +146,10 @@ private:
         for (auto const& [index, weight] : entries) {
             if (index == Point(0, corner)) centre = weight;
         }
-        auto const numOthers = std::count_if(entries.begin(), entries.end(), [&](auto const& entry) {
-            return entry.first != Point(0, corner) && std::abs(entry.second) > 1e-9;
-        });
+        auto const numOthers =
+            std::count_if(entries.begin(), entries.end(), [&](auto const& entry) {
+                return entry.first != Point(0, corner) && std::abs(entry.second) > 1e-9;
+            });
         if (numOthers == 0 && isNear(centre, 1.0)) return CornerType::Corner;
         if (numOthers == 2 && isNear(centre, 0.75)) return CornerType::Crease;
         if (coarse.GetVertexFaces(Vertex(0, corner)).size() == regularValence &&
@@ -219,7 +223,7 @@ private:
     SparseRows FindBSpline() const {
         // Where the points beyond edge i lie: next to its first corner, next to its second one, and
         // beyond its first corner diagonally.
-        constexpr int kBeyondFirst[4][2] = {{0, 1}, {1, 3}, {3, 2}, {2, 0}};   // {t, s}
+        constexpr int kBeyondFirst[4][2] = {{0, 1}, {1, 3}, {3, 2}, {2, 0}};  // {t, s}
         constexpr int kBeyondSecond[4][2] = {{0, 2}, {2, 3}, {3, 1}, {1, 0}};
         constexpr int kDiagonal[4][2] = {{0, 0}, {0, 3}, {3, 3}, {3, 0}};
 
@@ -256,14 +260,16 @@ private:
                     bool const endsSector =
                         isSharp[previous]
                             ? !Across(across[i].face, (across[i].edge + 1) % 4).Exists()
-                            : !Across(across[previous].face, (across[previous].edge + 3) % 4).Exists();
+                            : !Across(across[previous].face, (across[previous].edge + 3) % 4)
+                                   .Exists();
                     if (!endsSector) return {};
                     break;
                 }
                 case CornerType::Corner:
                     if (!isSharp[i] || !isSharp[previous]) return {};
                     break;
-                case CornerType::Other: return {};
+                case CornerType::Other:
+                    return {};
             }
         }
         ExtrapolateBeyond(grid, isSharp);
@@ -299,10 +305,9 @@ private:
 
     SparseRows FindBoxSpline() const {
         // The neighbours of each corner on the lattice, counter-clockwise from the next corner.
-        constexpr int kHexagon[3][6][2] = {
-            {{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}},
-            {{0, 1}, {0, 0}, {1, -1}, {2, -1}, {2, 0}, {1, 1}},
-            {{0, 0}, {1, 0}, {1, 1}, {0, 2}, {-1, 2}, {-1, 1}}};
+        constexpr int kHexagon[3][6][2] = {{{1, 0}, {0, 1}, {-1, 1}, {-1, 0}, {0, -1}, {1, -1}},
+                                           {{0, 1}, {0, 0}, {1, -1}, {2, -1}, {2, 0}, {1, 1}},
+                                           {{0, 0}, {1, 0}, {1, 1}, {0, 2}, {-1, 2}, {-1, 1}}};
 
         std::array<WeightRow, 12> points;
         for (int corner = 0; corner < 3; ++corner) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -53,7 +54,17 @@ struct RingSubdivision {
 
 /// Positions of the box spline's 12 control points; the triangle is (0,0), (1,0), (0,1), lattice
 /// neighbours are (+-1,0), (0,+-1), (1,-1), (-1,1).
-inline constexpr std::array<std::array<int, 2>, 12> kBoxSplineLattice{
-    {{0, -1}, {1, -1}, {2, -1}, {-1, 0}, {0, 0}, {1, 0}, {2, 0}, {-1, 1}, {0, 1}, {1, 1}, {-1, 2}, {0, 2}}};
+inline constexpr std::array<std::array<int, 2>, 12> kBoxSplineLattice{{{0, -1},
+                                                                       {1, -1},
+                                                                       {2, -1},
+                                                                       {-1, 0},
+                                                                       {0, 0},
+                                                                       {1, 0},
+                                                                       {2, 0},
+                                                                       {-1, 1},
+                                                                       {0, 1},
+                                                                       {1, 1},
+                                                                       {-1, 2},
+                                                                       {0, 2}}};
 
 }  // namespace limn::far_ext

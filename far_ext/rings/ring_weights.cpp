@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/rings/ring_weights.h"
 
 namespace limn::far_ext {
@@ -7,7 +8,8 @@ namespace {
 DenseRows MakeCorners(FaceRing const& ring) {
     auto const& points = ring.IsFaceVarying() ? ring.valueIndices : ring.faceVertices;
     int const size = ring.faceSizes[0];
-    DenseRows rows{ring.numPoints, std::vector<double>(static_cast<size_t>(size) * ring.numPoints, 0.0)};
+    DenseRows rows{ring.numPoints,
+                   std::vector<double>(static_cast<size_t>(size) * ring.numPoints, 0.0)};
     for (int i = 0; i < size; ++i) rows[i][points[i]] = 1.0;
     return rows;
 }
@@ -21,9 +23,11 @@ RingWeights::Node& RingWeights::Find(FaceRing const& ring) {
 }
 
 DenseRows const& RingWeights::Get(Node& node, int depth) {
-    if (static_cast<int>(node.rows.size()) <= depth) node.rows.resize(static_cast<size_t>(depth) + 1);
+    if (static_cast<int>(node.rows.size()) <= depth)
+        node.rows.resize(static_cast<size_t>(depth) + 1);
     if (!node.rows[depth]) {
-        node.rows[depth] = std::make_unique<DenseRows>(depth == 0 ? MakeCorners(*node.ring) : Compose(node, depth));
+        node.rows[depth] = std::make_unique<DenseRows>(depth == 0 ? MakeCorners(*node.ring)
+                                                                  : Compose(node, depth));
     }
     return *node.rows[depth];
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -15,7 +16,9 @@ struct DenseRows {
     std::vector<double> values;
 
     double* operator[](int row) { return &values[static_cast<size_t>(row) * numColumns]; }
-    double const* operator[](int row) const { return &values[static_cast<size_t>(row) * numColumns]; }
+    double const* operator[](int row) const {
+        return &values[static_cast<size_t>(row) * numColumns];
+    }
 };
 
 /// The weights of all refined points of rings, each ring and depth worked out once.
@@ -25,14 +28,16 @@ public:
     RingWeights(Far::TopologyRefiner const& refiner, bool isVarying, LatticeCache& lattices)
         : _scheme(refiner.GetSchemeType()),
           _options(refiner.GetSchemeOptions()),
-          _use(isVarying ? RingSubdivision::Use::VaryingRefinement : RingSubdivision::Use::Refinement),
+          _use(isVarying ? RingSubdivision::Use::VaryingRefinement
+                         : RingSubdivision::Use::Refinement),
           _lattices(lattices) {}
 
     struct Node {
         FaceRing const* ring = nullptr;
-        std::vector<SparseRows> steps;             // per child: its points over this ring's
+        std::vector<SparseRows> steps;  // per child: its points over this ring's
         std::vector<Node*> children;
-        std::vector<std::unique_ptr<DenseRows>> rows;  // per depth: the lattice's points over the ring's
+        std::vector<std::unique_ptr<DenseRows>>
+            rows;  // per depth: the lattice's points over the ring's
     };
 
     Node& Find(FaceRing const& ring);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cstddef>
@@ -12,8 +13,9 @@
 
 namespace limn::far_ext {
 
-/// Allocates for arrays of many megabytes that are filled at once: from the system's large pages, where it has some to
-/// give (the first touch of small ones costs more than what is computed into them), and without setting numbers to 0.
+/// Allocates for arrays of many megabytes that are filled at once: from the system's large pages,
+/// where it has some to give (the first touch of small ones costs more than what is computed into
+/// them), and without setting numbers to 0.
 template <class T>
 class LargeArrayAllocator {
 public:
@@ -25,7 +27,8 @@ public:
 
     T* allocate(std::size_t count) {
         std::size_t const size = (count * sizeof(T) + kPage - 1) / kPage * kPage;
-        if (!IsLarge(count)) return static_cast<T*>(::operator new(count * sizeof(T), std::align_val_t(kLine)));
+        if (!IsLarge(count))
+            return static_cast<T*>(::operator new(count * sizeof(T), std::align_val_t(kLine)));
         void* const block = std::aligned_alloc(kPage, size);
         if (!block) throw std::bad_alloc();
 #ifdef __linux__
@@ -35,15 +38,19 @@ public:
     }
 
     void deallocate(T* block, std::size_t count) noexcept {
-        if (IsLarge(count)) std::free(block);
-        else ::operator delete(block, std::align_val_t(kLine));
+        if (IsLarge(count))
+            std::free(block);
+        else
+            ::operator delete(block, std::align_val_t(kLine));
     }
 
     /// A number is left as the memory was.
     template <class U, class... Arguments>
     void construct(U* at, Arguments&&... arguments) {
-        if constexpr (sizeof...(arguments) == 0) ::new (static_cast<void*>(at)) U;
-        else ::new (static_cast<void*>(at)) U(std::forward<Arguments>(arguments)...);
+        if constexpr (sizeof...(arguments) == 0)
+            ::new (static_cast<void*>(at)) U;
+        else
+            ::new (static_cast<void*>(at)) U(std::forward<Arguments>(arguments)...);
     }
 
     bool operator==(LargeArrayAllocator const&) const { return true; }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <limits>
@@ -14,7 +15,9 @@ class RowWriter {
 public:
     explicit RowWriter(Index numRows) { _rows.offsets.assign(static_cast<size_t>(numRows) + 1, 0); }
 
-    void SetSize(Index row, size_t size) { _rows.offsets[static_cast<size_t>(row) + 1] = static_cast<int>(size); }
+    void SetSize(Index row, size_t size) {
+        _rows.offsets[static_cast<size_t>(row) + 1] = static_cast<int>(size);
+    }
 
     /// \throws Error  TooLarge: more than 2^31 entries
     void Allocate() {
@@ -22,7 +25,8 @@ public:
         for (size_t row = 1; row < _rows.offsets.size(); ++row) {
             total += static_cast<size_t>(_rows.offsets[row]);
             if (total > static_cast<size_t>(std::numeric_limits<int>::max())) {
-                throw Error(ErrorCode::TooLarge, "a table of stencils passes 2^31 entries; refine fewer levels");
+                throw Error(ErrorCode::TooLarge,
+                            "a table of stencils passes 2^31 entries; refine fewer levels");
             }
             _rows.offsets[row] = static_cast<int>(total);
         }
@@ -36,7 +40,8 @@ public:
         _rows.weights[_at++] = weight;
     }
 
-    /// Adds up entries of the same column in a row: a side that two faces share (valence 2, small closed meshes) comes twice.
+    /// Adds up entries of the same column in a row: a side that two faces share (valence 2, small
+    /// closed meshes) comes twice.
     void MarkRepeated(Index row) { _repeated.push_back(row); }
 
     SparseRows Get() {
@@ -53,7 +58,8 @@ private:
             size_t const first = to, end = static_cast<size_t>(_rows.offsets[row + 1]);
             for (size_t k = next; k < end; ++k) {
                 size_t same = first;
-                while (isRepeated[row] && same < to && _rows.indices[same] != _rows.indices[k]) ++same;
+                while (isRepeated[row] && same < to && _rows.indices[same] != _rows.indices[k])
+                    ++same;
                 if (isRepeated[row] && same < to) {
                     _rows.weights[same] += _rows.weights[k];
                     continue;

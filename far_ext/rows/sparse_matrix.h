@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -10,7 +11,9 @@ namespace limn::far_ext {
 using SparseRowsView = Eigen::Map<Eigen::SparseMatrix<double, Eigen::RowMajor, int> const>;
 
 inline SparseRowsView AsMatrix(SparseRows const& rows, Index numColumns) {
-    return {rows.GetNumRows(), numColumns, static_cast<Eigen::Index>(rows.weights.size()), rows.offsets.data(), rows.indices.data(), rows.weights.data()};
+    return {
+        rows.GetNumRows(),   numColumns,          static_cast<Eigen::Index>(rows.weights.size()),
+        rows.offsets.data(), rows.indices.data(), rows.weights.data()};
 }
 
 }  // namespace limn::far_ext

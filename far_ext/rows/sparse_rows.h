@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <utility>
@@ -61,9 +62,12 @@ struct SparseRows {
     /// dst[i] = row i applied to src, for rows of `length` doubles that lie one after another.
     void Apply(double const* src, double* dst, int length) const {
         switch (length) {  // what most callers ask for, without inner loops
-            case 2: return ApplyTo<2>(src, dst, 2);
-            case 3: return ApplyTo<3>(src, dst, 3);
-            default: return ApplyTo<0>(src, dst, length);
+            case 2:
+                return ApplyTo<2>(src, dst, 2);
+            case 3:
+                return ApplyTo<3>(src, dst, 3);
+            default:
+                return ApplyTo<0>(src, dst, length);
         }
     }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <utility>
 
@@ -8,13 +9,15 @@ namespace limn::far_ext {
 
 namespace {
 
-/// Rows that use the same control vertices (or, next to never, whose controls share a hash), ordered by
-/// the first of each set.
-std::vector<std::vector<Index>> FindRowsWithSameControls(StencilRowsView const& rows, size_t leastRows,
+/// Rows that use the same control vertices (or, next to never, whose controls share a hash),
+/// ordered by the first of each set.
+std::vector<std::vector<Index>> FindRowsWithSameControls(StencilRowsView const& rows,
+                                                         size_t leastRows,
                                                          std::vector<Index>& others) {
     std::vector<std::pair<uint64_t, Index>> keys(static_cast<size_t>(rows.numRows));
     for (Index row = 0; row < rows.numRows; ++row) {
-        uint64_t hash = static_cast<uint64_t>(rows.sizes[row]);  // whatever the order of the controls
+        uint64_t hash =
+            static_cast<uint64_t>(rows.sizes[row]);  // whatever the order of the controls
         for (int k = 0; k < rows.sizes[row]; ++k) {
             hash += Mix(static_cast<uint64_t>(rows.indices[rows.offsets[row] + k]) + 1);
         }
@@ -23,7 +26,8 @@ std::vector<std::vector<Index>> FindRowsWithSameControls(StencilRowsView const& 
     std::sort(keys.begin(), keys.end());
     std::vector<std::vector<Index>> sets;
     for (auto first = keys.begin(); first != keys.end();) {
-        auto const last = std::find_if(first, keys.end(), [&](auto const& key) { return key.first != first->first; });
+        auto const last = std::find_if(first, keys.end(),
+                                       [&](auto const& key) { return key.first != first->first; });
         bool const isSet = last - first >= static_cast<std::ptrdiff_t>(leastRows);
         if (isSet) sets.emplace_back();
         for (; first != last; ++first) (isSet ? sets.back() : others).push_back(first->second);
@@ -35,7 +39,8 @@ std::vector<std::vector<Index>> FindRowsWithSameControls(StencilRowsView const& 
 }  // namespace
 
 StencilGroups GroupRows(StencilRowsView const& rows) {
-    constexpr size_t kLeastRows = 6;  // below, filling up a panel of 16 costs more than the block saves
+    constexpr size_t kLeastRows =
+        6;  // below, filling up a panel of 16 costs more than the block saves
     StencilGroupsBuilder builder(rows.numRows, rows.numControls, rows.numSets);
     std::vector<int> columnOf(static_cast<size_t>(rows.numControls), -1);
     std::vector<Index> controls;
@@ -57,14 +62,16 @@ StencilGroups GroupRows(StencilRowsView const& rows) {
             singles.insert(singles.end(), members.begin(), members.end());
             continue;
         }
-        controls.assign(rows.indices + rows.offsets[first], rows.indices + rows.offsets[first] + rows.sizes[first]);
+        controls.assign(rows.indices + rows.offsets[first],
+                        rows.indices + rows.offsets[first] + rows.sizes[first]);
         std::sort(controls.begin(), controls.end());
         controls.erase(std::unique(controls.begin(), controls.end()), controls.end());
         for (size_t i = 0; i < controls.size(); ++i) columnOf[controls[i]] = static_cast<int>(i);
         // Two sets of controls may share a hash; what does not belong stays single.
         auto const belongs = [&](Index row) {
             Index const* const begin = rows.indices + rows.offsets[row];
-            return std::all_of(begin, begin + rows.sizes[row], [&](Index i) { return columnOf[i] >= 0; });
+            return std::all_of(begin, begin + rows.sizes[row],
+                               [&](Index i) { return columnOf[i] >= 0; });
         };
         auto const rest = std::stable_partition(members.begin(), members.end(), belongs);
         singles.insert(singles.end(), rest, members.end());
@@ -79,7 +86,8 @@ StencilGroups GroupRows(StencilRowsView const& rows) {
                 }
             }
         }
-        builder.AddGroup(builder.AddBlock(static_cast<int>(members.size()), static_cast<int>(controls.size()), weights),
+        builder.AddGroup(builder.AddBlock(static_cast<int>(members.size()),
+                                          static_cast<int>(controls.size()), weights),
                          members, controls);
         for (Index control : controls) columnOf[control] = -1;
     }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/stencils/refined_stencils.h"
 
 #include <algorithm>
@@ -22,10 +23,12 @@ using Mode = RefinedStencilOptions::Mode;
 using Level = Far::TopologyLevel;
 
 Index CountPoints(Level const& level, RefinedStencilOptions const& options) {
-    return options.mode == Mode::FaceVarying ? level.GetNumFVarValues(options.fvarChannel) : level.GetNumVertices();
+    return options.mode == Mode::FaceVarying ? level.GetNumFVarValues(options.fvarChannel)
+                                             : level.GetNumVertices();
 }
 
-Far::ConstIndexArray GetFacePoints(Level const& level, Index face, RefinedStencilOptions const& options) {
+Far::ConstIndexArray GetFacePoints(Level const& level, Index face,
+                                   RefinedStencilOptions const& options) {
     return options.mode == Mode::FaceVarying ? level.GetFaceFVarValues(face, options.fvarChannel)
                                              : level.GetFaceVertices(face);
 }
@@ -68,7 +71,8 @@ struct ControlNumbers {
 };
 
 template <class Real>
-StencilGroups RecordOneLevel(Far::TopologyRefiner const& refiner, RefinedStencilOptions const& options) {
+StencilGroups RecordOneLevel(Far::TopologyRefiner const& refiner,
+                             RefinedStencilOptions const& options) {
     Index const numRows = CountPoints(refiner.GetLevel(1), options);
     std::vector<std::pair<Index, Real>> entries;
     entries.reserve(static_cast<size_t>(numRows) * 8);
@@ -76,9 +80,15 @@ StencilGroups RecordOneLevel(Far::TopologyRefiner const& refiner, RefinedStencil
     Far::PrimvarRefinerReal<Real> const primvars(refiner);
     ControlNumbers const controls;
     switch (options.mode) {
-        case Mode::Vertex: primvars.Interpolate(1, controls, rows); break;
-        case Mode::Varying: primvars.InterpolateVarying(1, controls, rows); break;
-        case Mode::FaceVarying: primvars.InterpolateFaceVarying(1, controls, rows, options.fvarChannel); break;
+        case Mode::Vertex:
+            primvars.Interpolate(1, controls, rows);
+            break;
+        case Mode::Varying:
+            primvars.InterpolateVarying(1, controls, rows);
+            break;
+        case Mode::FaceVarying:
+            primvars.InterpolateFaceVarying(1, controls, rows, options.fvarChannel);
+            break;
     }
     StencilGroupsBuilder builder(numRows, CountPoints(refiner.GetLevel(0), options), 1);
     std::vector<Index> indices;
@@ -98,8 +108,8 @@ StencilGroups RecordOneLevel(Far::TopologyRefiner const& refiner, RefinedStencil
 
 // -------- face-varying topology that a face's ring does not determine
 
-/// True if the values round a vertex come in more pieces than there are values: OpenSubdiv's rule for
-/// them then depends on where it starts to count the faces.
+/// True if the values round a vertex come in more pieces than there are values: OpenSubdiv's rule
+/// for them then depends on where it starts to count the faces.
 bool HasValueInSeveralPieces(Level const& level, Index vertex, int channel) {
     auto const faces = level.GetVertexFaces(vertex);
     auto const corners = level.GetVertexFaceLocalIndices(vertex);
@@ -122,24 +132,33 @@ bool HasValueInSeveralPieces(Level const& level, Index vertex, int channel) {
 
 bool IsSetByRings(Level const& level, int channel) {
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
-        if (level.IsVertexNonManifold(vertex) || HasValueInSeveralPieces(level, vertex, channel)) return false;
+        if (level.IsVertexNonManifold(vertex) || HasValueInSeveralPieces(level, vertex, channel))
+            return false;
     }
     return true;
 }
 
 /// Far's own table, grouped afterwards.
-StencilGroups GroupFarTable(Far::TopologyRefiner const& refiner, RefinedStencilOptions const& options) {
+StencilGroups GroupFarTable(Far::TopologyRefiner const& refiner,
+                            RefinedStencilOptions const& options) {
     using Factory = Far::StencilTableFactoryReal<float>;
     Factory::Options farOptions;
     switch (options.mode) {
-        case Mode::Vertex: farOptions.interpolationMode = Factory::INTERPOLATE_VERTEX; break;
-        case Mode::Varying: farOptions.interpolationMode = Factory::INTERPOLATE_VARYING; break;
-        case Mode::FaceVarying: farOptions.interpolationMode = Factory::INTERPOLATE_FACE_VARYING; break;
+        case Mode::Vertex:
+            farOptions.interpolationMode = Factory::INTERPOLATE_VERTEX;
+            break;
+        case Mode::Varying:
+            farOptions.interpolationMode = Factory::INTERPOLATE_VARYING;
+            break;
+        case Mode::FaceVarying:
+            farOptions.interpolationMode = Factory::INTERPOLATE_FACE_VARYING;
+            break;
     }
     farOptions.generateIntermediateLevels = false;
     farOptions.generateOffsets = true;
     farOptions.fvarChannel = static_cast<unsigned>(options.fvarChannel);
-    std::unique_ptr<Far::StencilTableReal<float> const> const table(Factory::Create(refiner, farOptions));
+    std::unique_ptr<Far::StencilTableReal<float> const> const table(
+        Factory::Create(refiner, farOptions));
     return GroupRows(ViewStencils(*table));
 }
 
@@ -167,7 +186,8 @@ public:
         constexpr size_t kFewRings = 1024;    // take no time to speak of
         for (Index face = 0; face < _base.GetNumFaces(); ++face) {
             AddFace(face);
-            if (_parts.size() > kFewRings && _parts.size() * kRowsPerRing > _isDone.size()) return {};
+            if (_parts.size() > kFewRings && _parts.size() * kRowsPerRing > _isDone.size())
+                return {};
         }
         AddUnusedPoints();
         return _builder.Finish();
@@ -190,13 +210,17 @@ private:
         RingParts const& parts = GetParts(_ring);
         FaceLattice const& lattice = _lattices.Get(_ring.faceSizes[0], _depth);
         Index first = face;
-        for (int level = 0; level < _depth; ++level) first = _refiner.GetLevel(level).GetFaceChildFaces(first)[0];
+        for (int level = 0; level < _depth; ++level)
+            first = _refiner.GetLevel(level).GetFaceChildFaces(first)[0];
         AddPart(parts.inside, lattice, lattice.inside, first);
-        for (size_t i = 0; i < parts.edges.size(); ++i) AddPart(parts.edges[i], lattice, lattice.onEdge[i], first);
-        for (size_t i = 0; i < parts.corners.size(); ++i) AddPart(parts.corners[i], lattice, {lattice.atCorner[i]}, first);
+        for (size_t i = 0; i < parts.edges.size(); ++i)
+            AddPart(parts.edges[i], lattice, lattice.onEdge[i], first);
+        for (size_t i = 0; i < parts.corners.size(); ++i)
+            AddPart(parts.corners[i], lattice, {lattice.atCorner[i]}, first);
     }
 
-    void AddPart(Part const& part, FaceLattice const& lattice, std::vector<int> const& points, Index first) {
+    void AddPart(Part const& part, FaceLattice const& lattice, std::vector<int> const& points,
+                 Index first) {
         _rows.clear();
         for (int point : points) {
             auto const [face, corner] = lattice.places[point];
@@ -244,15 +268,19 @@ private:
     Part MakePart(DenseRows const& rows, std::vector<int> const& points) {
         Part part;
         for (int column = 0; column < rows.numColumns; ++column) {
-            auto const uses = [&](int point) { return static_cast<float>(rows[point][column]) != 0.0f; };
+            auto const uses = [&](int point) {
+                return static_cast<float>(rows[point][column]) != 0.0f;
+            };
             if (std::any_of(points.begin(), points.end(), uses)) part.columns.push_back(column);
         }
         for (int point : points) {
-            for (int column : part.columns) part.weights.push_back(static_cast<float>(rows[point][column]));
+            for (int column : part.columns)
+                part.weights.push_back(static_cast<float>(rows[point][column]));
         }
         constexpr size_t kLeastRows = 3;  // the three of an edge refined twice
         if (points.size() >= kLeastRows && part.columns.size() <= StencilGroups::kMaxColumns) {
-            part.block = _builder.AddBlock(static_cast<int>(points.size()), static_cast<int>(part.columns.size()), part.weights);
+            part.block = _builder.AddBlock(static_cast<int>(points.size()),
+                                           static_cast<int>(part.columns.size()), part.weights);
         }
         return part;
     }
@@ -264,7 +292,8 @@ private:
         for (Index vertex = 0; vertex < _base.GetNumVertices(); ++vertex) {
             if (_base.GetVertexFaces(vertex).size() != 0) continue;
             Index row = vertex;
-            for (int level = 0; level < _depth && row >= 0; ++level) row = _refiner.GetLevel(level).GetVertexChildVertex(row);
+            for (int level = 0; level < _depth && row >= 0; ++level)
+                row = _refiner.GetLevel(level).GetVertexChildVertex(row);
             if (row < 0) continue;
             _controls = {vertex};
             AddSingle(row, &one);
@@ -281,29 +310,37 @@ private:
     std::vector<char> _isDone;
     StencilGroupsBuilder _builder;
     std::unordered_map<RingWeights::Node const*, RingParts> _parts;
-    FaceRing _ring;                                   // scratch from here on
+    FaceRing _ring;  // scratch from here on
     std::vector<Index> _points, _rows, _controls, _singleControls;
     std::vector<float> _singleWeights;
 };
 
 }  // namespace
 
-StencilGroups BuildRefinedStencils(Far::TopologyRefiner const& refiner, RefinedStencilOptions const& options) {
+StencilGroups BuildRefinedStencils(Far::TopologyRefiner const& refiner,
+                                   RefinedStencilOptions const& options) {
     if (!refiner.IsUniform() || refiner.GetMaxLevel() < 1) {
-        throw Error(ErrorCode::BadOption, "stencils are built for a topology that is refined uniformly, to level 1 or more");
+        throw Error(
+            ErrorCode::BadOption,
+            "stencils are built for a topology that is refined uniformly, to level 1 or more");
     }
     int const numChannels = refiner.GetNumFVarChannels();
-    if (options.mode == Mode::FaceVarying && (options.fvarChannel < 0 || options.fvarChannel >= numChannels)) {
-        throw Error(ErrorCode::BadOption, fmt::format("there is no face-varying channel {}; the topology has {}",
-                                                      options.fvarChannel, numChannels));
+    if (options.mode == Mode::FaceVarying &&
+        (options.fvarChannel < 0 || options.fvarChannel >= numChannels)) {
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("there is no face-varying channel {}; the topology has {}",
+                                options.fvarChannel, numChannels));
     }
     if (refiner.GetMaxLevel() == 1) {
-        // Loop's weights come from a cosine, whose last bits depend on the CPU: rounded from double they do not.
+        // Loop's weights come from a cosine, whose last bits depend on the CPU: rounded from double
+        // they do not.
         bool const isLoop = refiner.GetSchemeType() == Sdc::SCHEME_LOOP;
-        return isLoop ? RecordOneLevel<double>(refiner, options) : RecordOneLevel<float>(refiner, options);
+        return isLoop ? RecordOneLevel<double>(refiner, options)
+                      : RecordOneLevel<float>(refiner, options);
     }
     std::optional<StencilGroups> groups;
-    if (options.mode != Mode::FaceVarying || IsSetByRings(refiner.GetLevel(0), options.fvarChannel)) {
+    if (options.mode != Mode::FaceVarying ||
+        IsSetByRings(refiner.GetLevel(0), options.fvarChannel)) {
         groups = FaceWalk(refiner, options).Build();
     }
     return groups ? std::move(*groups) : GroupFarTable(refiner, options);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/stencils/stencil_groups.h"
 
 #include <algorithm>
@@ -33,9 +34,9 @@ size_t BytesOf(std::vector<Entry> const& entries) {
 }  // namespace
 
 size_t StencilGroups::GetMemory() const {
-    return BytesOf(blocks) + BytesOf(weights) + BytesOf(shapes) + BytesOf(runLengths) + BytesOf(groups) +
-           BytesOf(controls) + BytesOf(runStarts) + BytesOf(singles.runs) + BytesOf(singles.indices) +
-           BytesOf(singles.weights);
+    return BytesOf(blocks) + BytesOf(weights) + BytesOf(shapes) + BytesOf(runLengths) +
+           BytesOf(groups) + BytesOf(controls) + BytesOf(runStarts) + BytesOf(singles.runs) +
+           BytesOf(singles.indices) + BytesOf(singles.weights);
 }
 
 StencilRows StencilGroups::Expand() const {
@@ -76,8 +77,9 @@ StencilRows StencilGroups::Expand() const {
             Block const& block = blocks[group.block];
             int const panel = place.row / kRowsPerPanel, lane = place.row % kRowsPerPanel;
             for (int column = 0; column < block.numColumns; ++column) {
-                size_t const at = block.firstWeight +
-                                  static_cast<size_t>(panel * block.numColumns + column) * kRowsPerPanel + lane;
+                size_t const at =
+                    block.firstWeight +
+                    static_cast<size_t>(panel * block.numColumns + column) * kRowsPerPanel + lane;
                 bool isUsed = false;
                 for (int set = 0; set < numSets; ++set) {
                     entry[set] = weights[at + set * block.GetSetSize()];
@@ -105,7 +107,8 @@ namespace {
 template <class IsEqual>
 int FindKept(std::unordered_multimap<uint64_t, int> const& kept, uint64_t hash, IsEqual isEqual) {
     auto const [first, last] = kept.equal_range(hash);
-    auto const found = std::find_if(first, last, [&](auto const& entry) { return isEqual(entry.second); });
+    auto const found =
+        std::find_if(first, last, [&](auto const& entry) { return isEqual(entry.second); });
     return found == last ? -1 : found->second;
 }
 
@@ -133,12 +136,15 @@ int StencilGroupsBuilder::AddBlock(int numRows, int numColumns, std::vector<floa
     auto from = weights.begin();
     for (int set = 0; set < _table.numSets; ++set) {
         for (int row = 0; row < numRows; ++row) {
-            float* to = &panels[set * block.GetSetSize() + static_cast<size_t>(row / kLanes) * numColumns * kLanes +
-                                row % kLanes];
+            float* to =
+                &panels[set * block.GetSetSize() +
+                        static_cast<size_t>(row / kLanes) * numColumns * kLanes + row % kLanes];
             for (int column = 0; column < numColumns; ++column, to += kLanes) *to = *from++;
         }
     }
-    uint64_t const hash = HashOf(panels.data(), panels.size(), (static_cast<uint64_t>(numRows) << 32) + static_cast<uint64_t>(numColumns));
+    uint64_t const hash =
+        HashOf(panels.data(), panels.size(),
+               (static_cast<uint64_t>(numRows) << 32) + static_cast<uint64_t>(numColumns));
     int const kept = FindKept(_lookup->blocks, hash, [&](int other) {
         auto const& b = _table.blocks[other];
         return b.numRows == numRows && b.numColumns == numColumns &&
@@ -152,7 +158,8 @@ int StencilGroupsBuilder::AddBlock(int numRows, int numColumns, std::vector<floa
     return number;
 }
 
-void StencilGroupsBuilder::AddGroup(int block, std::vector<Index> const& rows, std::vector<Index> const& controls) {
+void StencilGroupsBuilder::AddGroup(int block, std::vector<Index> const& rows,
+                                    std::vector<Index> const& controls) {
     auto& lengths = _lookup->lengths;
     auto& starts = _lookup->starts;
     lengths.clear();
@@ -172,7 +179,8 @@ void StencilGroupsBuilder::AddGroup(int block, std::vector<Index> const& rows, s
     });
     if (shape < 0) {
         shape = static_cast<int>(_table.shapes.size());
-        _table.shapes.push_back({static_cast<int>(_table.runLengths.size()), static_cast<int>(lengths.size())});
+        _table.shapes.push_back(
+            {static_cast<int>(_table.runLengths.size()), static_cast<int>(lengths.size())});
         _table.runLengths.insert(_table.runLengths.end(), lengths.begin(), lengths.end());
         _lookup->shapes.emplace(hash, shape);
     }
@@ -188,10 +196,12 @@ void StencilGroupsBuilder::AddSingle(Index row, std::vector<Index> const& contro
                                      std::vector<float> const& weights) {
     auto& singles = _table.singles;
     int const size = static_cast<int>(controls.size());
-    Single single{row, size, static_cast<Index>(singles.indices.size()), static_cast<Index>(singles.weights.size())};
+    Single single{row, size, static_cast<Index>(singles.indices.size()),
+                  static_cast<Index>(singles.weights.size())};
     auto const isEqual = [&](int other) {
         return _singles[other].size == size &&
-               std::memcmp(singles.weights.data() + _singles[other].firstWeight, weights.data(), BytesOf(weights)) == 0;
+               std::memcmp(singles.weights.data() + _singles[other].firstWeight, weights.data(),
+                           BytesOf(weights)) == 0;
     };
     int kept = static_cast<int>(_singles.size()) - 1;  // most rows are like the one before
     if (kept < 0 || !isEqual(kept)) {
@@ -199,8 +209,10 @@ void StencilGroupsBuilder::AddSingle(Index row, std::vector<Index> const& contro
         kept = FindKept(_lookup->singles, hash, isEqual);
         if (kept < 0) _lookup->singles.emplace(hash, static_cast<int>(_singles.size()));
     }
-    if (kept < 0) singles.weights.insert(singles.weights.end(), weights.begin(), weights.end());
-    else single.firstWeight = _singles[kept].firstWeight;
+    if (kept < 0)
+        singles.weights.insert(singles.weights.end(), weights.begin(), weights.end());
+    else
+        single.firstWeight = _singles[kept].firstWeight;
     singles.indices.insert(singles.indices.end(), controls.begin(), controls.end());
     _singles.push_back(single);
     CheckSize(singles.indices.size());
@@ -223,9 +235,10 @@ void StencilGroupsBuilder::MakeRuns() {
     }
     auto& runs = _table.singles.runs;
     for (Single const& single : _singles) {
-        bool const continues = !runs.empty() && runs.back().numRows < StencilGroups::kMostRowsPerRun &&
-                               runs.back().firstRow + runs.back().numRows == single.row &&
-                               runs.back().size == single.size && runs.back().firstWeight == single.firstWeight;
+        bool const continues =
+            !runs.empty() && runs.back().numRows < StencilGroups::kMostRowsPerRun &&
+            runs.back().firstRow + runs.back().numRows == single.row &&
+            runs.back().size == single.size && runs.back().firstWeight == single.firstWeight;
         if (continues) {
             ++runs.back().numRows;
         } else {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <memory>
@@ -9,9 +10,10 @@ namespace limn::far_ext {
 
 /// Stencil rows in the form that is evaluated fastest and takes least memory.
 ///
-/// Rows that use the same control vertices form a group: those vertices once, and a block of weights,
-/// rows x columns. Equal blocks are kept once: on a refined mesh a handful of them serves all faces.
-/// Rows that group with few others stay single, and their weights too are kept once where equal.
+/// Rows that use the same control vertices form a group: those vertices once, and a block of
+/// weights, rows x columns. Equal blocks are kept once: on a refined mesh a handful of them serves
+/// all faces. Rows that group with few others stay single, and their weights too are kept once
+/// where equal.
 ///
 /// Shape    numRows rows of weights over numControls control vertices, numSets times (values, then
 ///          derivatives in the order of WeightSet). Every row is in one group or single.
@@ -26,7 +28,9 @@ struct StencilGroups {
         size_t firstWeight;
 
         int GetNumPanels() const { return (numRows + kRowsPerPanel - 1) / kRowsPerPanel; }
-        size_t GetSetSize() const { return static_cast<size_t>(GetNumPanels()) * numColumns * kRowsPerPanel; }
+        size_t GetSetSize() const {
+            return static_cast<size_t>(GetNumPanels()) * numColumns * kRowsPerPanel;
+        }
     };
 
     /// How a group's rows lie in the table: runs of rows that follow each other.
@@ -40,8 +44,9 @@ struct StencilGroups {
         Index firstStart;    ///< into runStarts: where in the table each run starts
     };
 
-    /// Rows on their own that follow each other and have equal weights: row firstRow + i has the controls
-    /// indices[firstIndex + i * size + k] and, in set s, the weights weights[firstWeight + s * size + k].
+    /// Rows on their own that follow each other and have equal weights: row firstRow + i has the
+    /// controls indices[firstIndex + i * size + k] and, in set s, the weights weights[firstWeight +
+    /// s * size + k].
     struct Run {
         Index firstRow;
         int numRows;  ///< at most kMostRowsPerRun, so that runs can be shared out
@@ -89,7 +94,8 @@ public:
     void AddGroup(int block, std::vector<Index> const& rows, std::vector<Index> const& controls);
 
     /// Adds a row on its own, in any order; `weights` lie as [set][control].
-    void AddSingle(Index row, std::vector<Index> const& controls, std::vector<float> const& weights);
+    void AddSingle(Index row, std::vector<Index> const& controls,
+                   std::vector<float> const& weights);
 
     StencilGroups Finish();
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/stencils/stencil_rows.h"
 
 #include <cmath>
@@ -19,25 +20,31 @@ void StencilRows::EndRow() {
 }
 
 void Validate(StencilRowsView const& rows) {
-    auto const refuse = [](std::string const& message) { throw Error(ErrorCode::BadMesh, message); };
+    auto const refuse = [](std::string const& message) {
+        throw Error(ErrorCode::BadMesh, message);
+    };
     if (rows.numRows > 0 && (!rows.sizes || !rows.offsets || !rows.indices || !rows.weights[0])) {
-        refuse("the stencil table lacks sizes, offsets, indices or weights (Far makes offsets with generateOffsets)");
+        refuse(
+            "the stencil table lacks sizes, offsets, indices or weights (Far makes offsets with "
+            "generateOffsets)");
     }
     for (Index row = 0; row < rows.numRows; ++row) {
         Index const begin = rows.offsets[row];
         int const size = rows.sizes[row];
         if (begin < 0 || size < 0) {
-            refuse(fmt::format("stencil {} has offset {} and size {}; neither may be negative", row, begin, size));
+            refuse(fmt::format("stencil {} has offset {} and size {}; neither may be negative", row,
+                               begin, size));
         }
         for (Index k = begin; k < begin + size; ++k) {
             if (rows.indices[k] < 0 || rows.indices[k] >= rows.numControls) {
-                refuse(fmt::format("stencil {} names control vertex {}; there are {}", row, rows.indices[k],
-                                   rows.numControls));
+                refuse(fmt::format("stencil {} names control vertex {}; there are {}", row,
+                                   rows.indices[k], rows.numControls));
             }
             for (int set = 0; set < rows.numSets; ++set) {
                 if (!std::isfinite(rows.weights[set][k])) {
-                    refuse(fmt::format("stencil {} has the weight {} at control vertex {}; weights are finite", row,
-                                       rows.weights[set][k], rows.indices[k]));
+                    refuse(fmt::format(
+                        "stencil {} has the weight {} at control vertex {}; weights are finite",
+                        row, rows.weights[set][k], rows.indices[k]));
                 }
             }
         }

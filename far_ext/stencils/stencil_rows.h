@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <array>
@@ -54,14 +55,16 @@ public:
     void EndRow();
 
     StencilRowsView GetView() const {
-        StencilRowsView view{_sizes.data(), _offsets.data(),   _indices.data(), {},
+        StencilRowsView view{_sizes.data(), _offsets.data(),  _indices.data(), {},
                              _numSets,      GetNumStencils(), _numControls};
         for (int set = 0; set < _numSets; ++set) view.weights[set] = _weights[set].data();
         return view;
     }
 
 private:
-    std::vector<float> const& Get(WeightSet set) const { return _weights[static_cast<std::size_t>(set)]; }
+    std::vector<float> const& Get(WeightSet set) const {
+        return _weights[static_cast<std::size_t>(set)];
+    }
 
     Index _numControls;
     int _numSets;
@@ -88,8 +91,9 @@ StencilRowsView ViewStencils(Table const& table) {
 template <class Table>
 StencilRowsView ViewLimitStencils(Table const& table) {
     StencilRowsView view = ViewStencils(table);
-    std::vector<float> const* const sets[] = {&table.GetDuWeights(), &table.GetDvWeights(), &table.GetDuuWeights(),
-                                              &table.GetDuvWeights(), &table.GetDvvWeights()};
+    std::vector<float> const* const sets[] = {&table.GetDuWeights(), &table.GetDvWeights(),
+                                              &table.GetDuuWeights(), &table.GetDuvWeights(),
+                                              &table.GetDvvWeights()};
     for (std::vector<float> const* set : sets) {
         if (set->empty() || set->size() != table.GetWeights().size()) break;
         view.weights[static_cast<std::size_t>(view.numSets++)] = set->data();
@@ -99,8 +103,8 @@ StencilRowsView ViewLimitStencils(Table const& table) {
 
 /// Refuses rows that would be read out of bounds or would make values that are not numbers.
 ///
-/// \throws Error  BadMesh: no offsets, a negative size or offset, an index outside [0, numControls), a weight that
-///                is not finite
+/// \throws Error  BadMesh: no offsets, a negative size or offset, an index outside [0,
+///                numControls), a weight that is not finite
 void Validate(StencilRowsView const& rows);
 
 }  // namespace limn::far_ext

@@ -1,9 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/topology/control_mesh.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
-
 #include <opensubdiv/vtr/types.h>
 
 #include "far_ext/error.h"
@@ -21,7 +21,9 @@ Sdc::Options ControlMesh::DefaultOptions() {
 
 namespace {
 
-[[noreturn]] void Refuse(ErrorCode code, std::string const& message) { throw Error(code, message); }
+[[noreturn]] void Refuse(ErrorCode code, std::string const& message) {
+    throw Error(code, message);
+}
 
 void ValidateFaces(ControlMesh const& mesh) {
     constexpr int kValenceLimit = OpenSubdiv::Vtr::VALENCE_LIMIT;
@@ -35,8 +37,9 @@ void ValidateFaces(ControlMesh const& mesh) {
                    fmt::format("face {} has {} corners; a face has at least 3", face, size));
         }
         if (size > kValenceLimit) {
-            Refuse(ErrorCode::TooLarge, fmt::format("face {} has {} corners; at most {} are possible",
-                                                    face, size, kValenceLimit));
+            Refuse(ErrorCode::TooLarge,
+                   fmt::format("face {} has {} corners; at most {} are possible", face, size,
+                               kValenceLimit));
         }
         if (mesh.scheme == Sdc::SCHEME_LOOP && size != 3) {
             Refuse(ErrorCode::BadMesh,
@@ -50,8 +53,9 @@ void ValidateFaces(ControlMesh const& mesh) {
         for (int i = 0; i < size; ++i, ++corner) {
             Index const vertex = mesh.faceVertices[corner];
             if (vertex < 0 || vertex >= mesh.numVertices) {
-                Refuse(ErrorCode::BadMesh, fmt::format("face {} uses vertex {}; there are {} vertices",
-                                                       face, vertex, mesh.numVertices));
+                Refuse(ErrorCode::BadMesh,
+                       fmt::format("face {} uses vertex {}; there are {} vertices", face, vertex,
+                                   mesh.numVertices));
             }
             if (++valences[vertex] > kValenceLimit / 2) {
                 Refuse(ErrorCode::TooLarge,
@@ -72,25 +76,26 @@ void ValidateTags(ControlMesh const& mesh) {
     for (size_t i = 0; i < mesh.creaseSharpness.size(); ++i) {
         Index const a = mesh.creaseVertexPairs[2 * i], b = mesh.creaseVertexPairs[2 * i + 1];
         if (!isVertex(a) || !isVertex(b) || !isSharpness(mesh.creaseSharpness[i])) {
-            Refuse(ErrorCode::BadMesh,
-                   fmt::format("crease {} ({} {}, sharpness {}): vertices are 0 to {}, sharpness is 0 "
-                               "or more",
-                               i, a, b, mesh.creaseSharpness[i], mesh.numVertices - 1));
+            Refuse(
+                ErrorCode::BadMesh,
+                fmt::format("crease {} ({} {}, sharpness {}): vertices are 0 to {}, sharpness is 0 "
+                            "or more",
+                            i, a, b, mesh.creaseSharpness[i], mesh.numVertices - 1));
         }
     }
     for (size_t i = 0; i < mesh.cornerSharpness.size(); ++i) {
         if (!isVertex(mesh.cornerVertices[i]) || !isSharpness(mesh.cornerSharpness[i])) {
             Refuse(ErrorCode::BadMesh,
-                   fmt::format("corner {} (vertex {}, sharpness {}): vertices are 0 to {}, sharpness "
-                               "is 0 or more",
-                               i, mesh.cornerVertices[i], mesh.cornerSharpness[i],
-                               mesh.numVertices - 1));
+                   fmt::format(
+                       "corner {} (vertex {}, sharpness {}): vertices are 0 to {}, sharpness "
+                       "is 0 or more",
+                       i, mesh.cornerVertices[i], mesh.cornerSharpness[i], mesh.numVertices - 1));
         }
     }
     for (Index hole : mesh.holes) {
         if (hole < 0 || hole >= mesh.GetNumFaces()) {
-            Refuse(ErrorCode::BadMesh,
-                   fmt::format("hole names face {}; faces are 0 to {}", hole, mesh.GetNumFaces() - 1));
+            Refuse(ErrorCode::BadMesh, fmt::format("hole names face {}; faces are 0 to {}", hole,
+                                                   mesh.GetNumFaces() - 1));
         }
     }
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/topology/face_components.h"
 
 #include <map>
@@ -20,7 +21,8 @@ FaceComponents FaceComponents::Find(Far::TopologyLevel const& level) {
     std::map<Index, int> numbers;
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         Index const r = root(level.GetFaceVertices(face)[0]);
-        components.ofFace.push_back(numbers.try_emplace(r, static_cast<int>(numbers.size())).first->second);
+        components.ofFace.push_back(
+            numbers.try_emplace(r, static_cast<int>(numbers.size())).first->second);
     }
     components.count = static_cast<int>(numbers.size());
     return components;
@@ -32,7 +34,8 @@ std::vector<int> FaceComponents::FindEulerCharacteristics(Far::TopologyLevel con
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
         if (level.GetVertexFaces(vertex).size()) ++euler[ofFace[level.GetVertexFaces(vertex)[0]]];
     }
-    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) --euler[ofFace[level.GetEdgeFaces(edge)[0]]];
+    for (Index edge = 0; edge < level.GetNumEdges(); ++edge)
+        --euler[ofFace[level.GetEdgeFaces(edge)[0]]];
     return euler;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <vector>
@@ -8,7 +9,8 @@
 
 namespace limn::far_ext {
 
-/// The components of a mesh: faces that hang together by shared vertices, numbered by their lowest face.
+/// The components of a mesh: faces that hang together by shared vertices, numbered by their lowest
+/// face.
 struct FaceComponents {
     int count = 0;
     std::vector<int> ofFace;

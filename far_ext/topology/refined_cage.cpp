@@ -1,16 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/topology/refined_cage.h"
 
 namespace limn::far_ext {
 
 namespace {
 
-/// Tags as the last level has them. Boundaries are sharp by rule and need none, unless the rule gives them
-/// no surface, where a tag tells which of them have one.
-void CopyTags(Far::TopologyLevel const& level, Sdc::Options::VtxBoundaryInterpolation boundary, ControlMesh& cage) {
+/// Tags as the last level has them. Boundaries are sharp by rule and need none, unless the rule
+/// gives them no surface, where a tag tells which of them have one.
+void CopyTags(Far::TopologyLevel const& level, Sdc::Options::VtxBoundaryInterpolation boundary,
+              ControlMesh& cage) {
     bool const isBoundaryByRule = boundary != Sdc::Options::VTX_BOUNDARY_NONE;
     for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
         float const sharpness = level.GetEdgeSharpness(edge);
-        bool const isByRule = (isBoundaryByRule && level.IsEdgeBoundary(edge)) || level.IsEdgeNonManifold(edge);
+        bool const isByRule =
+            (isBoundaryByRule && level.IsEdgeBoundary(edge)) || level.IsEdgeNonManifold(edge);
         if (sharpness <= 0.0f || isByRule) continue;
         auto const ends = level.GetEdgeVertices(edge);
         cage.creaseVertexPairs.insert(cage.creaseVertexPairs.end(), {ends[0], ends[1]});
@@ -19,7 +22,8 @@ void CopyTags(Far::TopologyLevel const& level, Sdc::Options::VtxBoundaryInterpol
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
         float const sharpness = level.GetVertexSharpness(vertex);
         bool const isByRule = level.IsVertexNonManifold(vertex) ||
-                              (boundary == Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER && level.IsVertexCorner(vertex));
+                              (boundary == Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER &&
+                               level.IsVertexCorner(vertex));
         if (sharpness <= 0.0f || isByRule) continue;
         cage.cornerVertices.push_back(vertex);
         cage.cornerSharpness.push_back(sharpness);

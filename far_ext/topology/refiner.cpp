@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/topology/refiner.h"
 
 #include <algorithm>
@@ -40,7 +41,9 @@ FarReportGuard::FarReportGuard() : _outer(innermostGuard) {
     innermostGuard = this;
 }
 
-FarReportGuard::~FarReportGuard() { innermostGuard = _outer; }
+FarReportGuard::~FarReportGuard() {
+    innermostGuard = _outer;
+}
 
 void FarReportGuard::ThrowIfReported(char const* doing) const {
     if (!_errors.empty()) {

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+//
 // limn field, and the map field of limn bake, from outside.
 
 #include <cmath>
@@ -22,8 +24,10 @@ using Vector = Eigen::Vector3d;
 class CliField : public testing::Test {
 protected:
     test::TemporaryFolder folder;
-    std::string spot = std::string(LIMN_SOURCE_DIR) + "/scenes/spot/spot.obj", cube = test::DataPath("golden_surface/cube.obj"),
-                grid = test::DataPath("golden_surface/gridholetri.obj"), torus = test::DataPath("golden_surface/torustri.obj");
+    std::string spot = std::string(LIMN_SOURCE_DIR) + "/scenes/spot/spot.obj",
+                cube = test::DataPath("golden_surface/cube.obj"),
+                grid = test::DataPath("golden_surface/gridholetri.obj"),
+                torus = test::DataPath("golden_surface/torustri.obj");
 
     json Report() const { return ReadJson(folder / "r.json"); }
 
@@ -36,17 +40,19 @@ protected:
         for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
             auto const ends = level.GetEdgeVertices(edge);
             text += fmt::format("{},{},{}\n", ends[0], ends[1],
-                                scene.positions[3 * static_cast<size_t>(ends[1]) + 1] - scene.positions[3 * static_cast<size_t>(ends[0]) + 1]);
+                                scene.positions[3 * static_cast<size_t>(ends[1]) + 1] -
+                                    scene.positions[3 * static_cast<size_t>(ends[0]) + 1]);
         }
         return folder.Write("y.edges.csv", text);
     }
 };
 
 TEST_F(CliField, ReportTellsWhatTheFieldIsMadeOf) {
-    ASSERT_EQ(Limn({"field", spot, "-o", folder / "f.obj", "--levels", "1", "--source", "0", "--sink", "100", "--vortex", "40:2", "--vortex", "150:-2",
-                    "--report", folder / "r.json"})
-                  .status,
-              0);
+    ASSERT_EQ(
+        Limn({"field", spot, "-o", folder / "f.obj", "--levels", "1", "--source", "0", "--sink",
+              "100", "--vortex", "40:2", "--vortex", "150:-2", "--report", folder / "r.json"})
+            .status,
+        0);
     json const report = Report();
     EXPECT_EQ(report["sum_of_indices"], 2.0);
     EXPECT_EQ(report["euler_characteristic"], 2);
@@ -62,18 +68,24 @@ TEST_F(CliField, ReportTellsWhatTheFieldIsMadeOf) {
     // A refined mesh with limit normals, and a tangent vector per vertex.
     auto const fine = engine::ReadMesh(folder / "f.obj");
     EXPECT_TRUE(Contains(test::ReadText(folder / "f.obj"), "vn "));
-    auto const table = engine::ReadNumberTable(folder / "f.vectors.csv", {{"vertex", "x", "y", "z"}});
+    auto const table =
+        engine::ReadNumberTable(folder / "f.vectors.csv", {{"vertex", "x", "y", "z"}});
     EXPECT_EQ(table.GetNumRows(), static_cast<size_t>(fine.cage.numVertices));
 }
 
 TEST_F(CliField, VectorsAreTheProjectedAxisForTheGradientOfACoordinate) {
-    ASSERT_EQ(Limn({"field", spot, "-o", folder / "f.obj", "--levels", "2", "--edges", WriteGradientOfY(spot), "--precision", "double"}).status, 0);
-    auto const table = engine::ReadNumberTable(folder / "f.vectors.csv", {{"vertex", "x", "y", "z"}});
+    ASSERT_EQ(Limn({"field", spot, "-o", folder / "f.obj", "--levels", "2", "--edges",
+                    WriteGradientOfY(spot), "--precision", "double"})
+                  .status,
+              0);
+    auto const table =
+        engine::ReadNumberTable(folder / "f.vectors.csv", {{"vertex", "x", "y", "z"}});
     auto const lines = Lines(test::ReadText(folder / "f.obj"));
     size_t row = 0;
     for (std::string const& line : lines) {
         Vector normal;
-        if (std::sscanf(line.c_str(), "vn %lf %lf %lf", &normal[0], &normal[1], &normal[2]) != 3) continue;
+        if (std::sscanf(line.c_str(), "vn %lf %lf %lf", &normal[0], &normal[1], &normal[2]) != 3)
+            continue;
         Vector const vector(table.Get(row, 1), table.Get(row, 2), table.Get(row, 3));
         ASSERT_LT((vector - (Vector::UnitY() - normal.y() * normal)).norm(), 1e-9) << row;
         ++row;
@@ -86,23 +98,36 @@ TEST_F(CliField, EdgesComeBackAsTheyWere) {
     ASSERT_EQ(Limn({"field", spot, "-o", folder / "again.edges.csv", "--edges", edges}).status, 0);
     auto const scene = engine::ReadMesh(spot);
     auto const refiner = test::MakeRefiner(scene, 0);
-    EXPECT_EQ(engine::ReadEdgeValues(edges, refiner->GetLevel(0)), engine::ReadEdgeValues(folder / "again.edges.csv", refiner->GetLevel(0)));
+    EXPECT_EQ(engine::ReadEdgeValues(edges, refiner->GetLevel(0)),
+              engine::ReadEdgeValues(folder / "again.edges.csv", refiner->GetLevel(0)));
 }
 
 TEST_F(CliField, HarmonicAndMatchedFields) {
-    ASSERT_EQ(Limn({"field", torus, "--scheme", "loop", "-o", folder / "f.faces.csv", "--harmonic", "1,0.5", "--report", folder / "r.json"}).status, 0);
+    ASSERT_EQ(Limn({"field", torus, "--scheme", "loop", "-o", folder / "f.faces.csv", "--harmonic",
+                    "1,0.5", "--report", folder / "r.json"})
+                  .status,
+              0);
     EXPECT_EQ(Report()["generators"], 2);
-    EXPECT_LT(Report()["parts"]["gradient"].get<double>() + Report()["parts"]["vortex"].get<double>(), 1e-9);
+    EXPECT_LT(
+        Report()["parts"]["gradient"].get<double>() + Report()["parts"]["vortex"].get<double>(),
+        1e-9);
     EXPECT_TRUE(Report()["sum_of_indices"] == 0.0);
     // The vectors of that field, matched, are that field.
-    ASSERT_EQ(Limn({"field", torus, "--scheme", "loop", "-o", folder / "g.faces.csv", "--match", folder / "f.faces.csv"}).status, 0);
-    auto const a = engine::ReadNumberTable(folder / "f.faces.csv", {{"face", "x", "y", "z"}}), b = engine::ReadNumberTable(folder / "g.faces.csv", {{"face", "x", "y", "z"}});
+    ASSERT_EQ(Limn({"field", torus, "--scheme", "loop", "-o", folder / "g.faces.csv", "--match",
+                    folder / "f.faces.csv"})
+                  .status,
+              0);
+    auto const a = engine::ReadNumberTable(folder / "f.faces.csv", {{"face", "x", "y", "z"}}),
+               b = engine::ReadNumberTable(folder / "g.faces.csv", {{"face", "x", "y", "z"}});
     for (size_t i = 0; i < a.values.size(); ++i) EXPECT_NEAR(a.values[i], b.values[i], 2e-3);
 }
 
 TEST_F(CliField, TheSameBytesForAnyNumberOfThreads) {
     for (char const* threads : {"1", "4"}) {
-        ASSERT_EQ(Limn({"field", spot, "-o", folder / (std::string(threads) + ".obj"), "--levels", "2", "--source", "0", "--sink", "9", "--threads", threads}).status, 0);
+        ASSERT_EQ(Limn({"field", spot, "-o", folder / (std::string(threads) + ".obj"), "--levels",
+                        "2", "--source", "0", "--sink", "9", "--threads", threads})
+                      .status,
+                  0);
     }
     EXPECT_EQ(test::ReadText(folder / "1.vectors.csv"), test::ReadText(folder / "4.vectors.csv"));
     EXPECT_EQ(test::ReadText(folder / "1.obj"), test::ReadText(folder / "4.obj"));
@@ -124,28 +149,42 @@ TEST_F(CliField, WhatIsWrongIsNamed) {
     refuse({cube, "--source", "1:2", "--sink", "3"}, 3, "add up to 1, not 0");
     refuse({cube, "--vortex", "1"}, 3, "--balance");
     refuse({cube, "--harmonic", "1"}, 3, "1 coefficients; the surface has 0 generators");
-    refuse({cube, "--edges", folder.Write("e.csv", "v0,v1,value\n0,6,1\n")}, 3, "e.csv:2: there is no edge from vertex 0 to 6");
-    refuse({cube, "--edges", folder.Write("e.csv", "v0,v1,value\n0,1,1\n1,0,1\n")}, 3, "comes twice, first in line 2");
-    refuse({cube, "--edges", folder.Write("e.csv", "v0,v1,value\n0,1,nan\n")}, 3, "e.csv:2: 'nan' in column value is no number");
+    refuse({cube, "--edges", folder.Write("e.csv", "v0,v1,value\n0,6,1\n")}, 3,
+           "e.csv:2: there is no edge from vertex 0 to 6");
+    refuse({cube, "--edges", folder.Write("e.csv", "v0,v1,value\n0,1,1\n1,0,1\n")}, 3,
+           "comes twice, first in line 2");
+    refuse({cube, "--edges", folder.Write("e.csv", "v0,v1,value\n0,1,nan\n")}, 3,
+           "e.csv:2: 'nan' in column value is no number");
     refuse({cube, "--edges", folder.Write("e.csv", "v0,v1,value\n0,1,1e999\n")}, 3, "e.csv:2");
-    refuse({cube, "--edges", folder.Write("e.csv", "a,b\n")}, 3, "e.csv:1: the header needs the columns v0,v1,value");
-    refuse({cube, "--match", folder.Write("m.csv", "face,x,y,z\n6,1,0,0\n")}, 3, "m.csv:2: face 6 does not exist");
+    refuse({cube, "--edges", folder.Write("e.csv", "a,b\n")}, 3,
+           "e.csv:1: the header needs the columns v0,v1,value");
+    refuse({cube, "--match", folder.Write("m.csv", "face,x,y,z\n6,1,0,0\n")}, 3,
+           "m.csv:2: face 6 does not exist");
     refuse({cube, "--edges", folder / "missing.csv"}, 5, "missing.csv");
-    EXPECT_EQ(Limn({"field", cube, "-o", folder / "b.obj", "--vortex", "1", "--balance"}).status, 0);
-    EXPECT_EQ(Limn({"field", grid, "--scheme", "loop", "-o", folder / "n.obj", "--source", "1", "--at-boundary", "normal"}).status, 0);
+    EXPECT_EQ(Limn({"field", cube, "-o", folder / "b.obj", "--vortex", "1", "--balance"}).status,
+              0);
+    EXPECT_EQ(Limn({"field", grid, "--scheme", "loop", "-o", folder / "n.obj", "--source", "1",
+                    "--at-boundary", "normal"})
+                  .status,
+              0);
     ExpectError(Limn({"field", cube, "-o", folder / "f.txt", "--vortex", "1"}), 2);
 }
 
 // What is over is taken off all faces of the component alike.
 TEST_F(CliField, BalanceSpreadsTheDefectEvenly) {
-    ASSERT_EQ(Limn({"field", cube, "-o", folder / "b.edges.csv", "--vortex", "1:3", "--balance"}).status, 0);
+    ASSERT_EQ(
+        Limn({"field", cube, "-o", folder / "b.edges.csv", "--vortex", "1:3", "--balance"}).status,
+        0);
     auto const refiner = test::MakeRefiner(engine::ReadMesh(cube), 0);
     auto const level = refiner->GetLevel(0);
-    auto const curl = far_ext::BuildD1(level).Apply(engine::ReadEdgeValues(folder / "b.edges.csv", level));
-    for (size_t face = 0; face < curl.size(); ++face) EXPECT_NEAR(curl[face], face == 1 ? 2.5 : -0.5, 1e-12);
+    auto const curl =
+        far_ext::BuildD1(level).Apply(engine::ReadEdgeValues(folder / "b.edges.csv", level));
+    for (size_t face = 0; face < curl.size(); ++face)
+        EXPECT_NEAR(curl[face], face == 1 ? 2.5 : -0.5, 1e-12);
 }
 
-// spot has faces that are not quads: arrows would need another level than the edges that are written.
+// spot has faces that are not quads: arrows would need another level than the edges that are
+// written.
 TEST_F(CliField, APictureDoesNotChangeTheOutput) {
     Words const field{"field", spot, "--source", "0", "--sink", "9", "--picture", folder / "p.png"};
     auto const run = [&](Words const& more) {
@@ -156,7 +195,10 @@ TEST_F(CliField, APictureDoesNotChangeTheOutput) {
     EXPECT_TRUE(Contains(ExpectError(run({"-o", folder / "a.edges.csv"}), 2), "--levels 1"));
     EXPECT_TRUE(folder.List().empty());
     ASSERT_EQ(run({"-o", folder / "a.edges.csv", "--levels", "1"}).status, 0);
-    ASSERT_EQ(Limn({"field", spot, "--source", "0", "--sink", "9", "-o", folder / "b.edges.csv", "--levels", "1"}).status, 0);
+    ASSERT_EQ(Limn({"field", spot, "--source", "0", "--sink", "9", "-o", folder / "b.edges.csv",
+                    "--levels", "1"})
+                  .status,
+              0);
     EXPECT_EQ(test::ReadText(folder / "a.edges.csv"), test::ReadText(folder / "b.edges.csv"));
     EXPECT_TRUE(std::filesystem::exists(folder / "p.png"));
 }
@@ -179,8 +221,9 @@ TEST_F(CliField, TheExampleOfItsHelpRuns) {
 
 // A field from the outer boundary straight to the inner one vanishes nowhere.
 TEST_F(CliField, AFieldAcrossBoundariesIsNotSingularThere) {
-    ASSERT_EQ(Limn({"field", grid, "--scheme", "loop", "--at-boundary", "normal", "--harmonic", "1", "--levels", "1", "-o", folder / "x.obj", "--report",
-                    folder / "r.json", "--picture", folder / "x.png"})
+    ASSERT_EQ(Limn({"field", grid, "--scheme", "loop", "--at-boundary", "normal", "--harmonic", "1",
+                    "--levels", "1", "-o", folder / "x.obj", "--report", folder / "r.json",
+                    "--picture", folder / "x.png"})
                   .status,
               0);
     EXPECT_TRUE(Report()["singularities"].empty());
@@ -190,26 +233,31 @@ TEST_F(CliField, AFieldAcrossBoundariesIsNotSingularThere) {
 
 class CliFieldBake : public CliField {
 protected:
-    std::vector<double> Look(std::string const& file, std::vector<std::string> const& channels, int x, int y) { return _lookup.Look(folder / file, channels, x, y); }
+    std::vector<double> Look(std::string const& file, std::vector<std::string> const& channels,
+                             int x, int y) {
+        return _lookup.Look(folder / file, channels, x, y);
+    }
 
 private:
     engine::ExrLookup _lookup;
 };
 
 TEST_F(CliFieldBake, ObjectVectorsAreTheProjectedAxisAtEveryTexel) {
-    ASSERT_EQ(Limn({"bake", spot, "-o", folder / "{map}.exr", "--maps", "field,normal", "--field", WriteGradientOfY(spot), "--size", "256", "--coverage",
-                    "--padding", "0"})
+    ASSERT_EQ(Limn({"bake", spot, "-o", folder / "{map}.exr", "--maps", "field,normal", "--field",
+                    WriteGradientOfY(spot), "--size", "256", "--coverage", "--padding", "0"})
                   .status,
               0);
     int count = 0, numOff = 0;
     double worst = 0.0;
     for (int y = 0; y < 256; ++y) {
         for (int x = 0; x < 256; ++x) {
-            auto const f = Look("field.exr", {"R", "G", "B", "coverage"}, x, y), n = Look("normal.exr", {"R", "G", "B"}, x, y);
+            auto const f = Look("field.exr", {"R", "G", "B", "coverage"}, x, y),
+                       n = Look("normal.exr", {"R", "G", "B"}, x, y);
             if (f[3] < 1.0) continue;
             ++count;
             Vector const normal(n[0], n[1], n[2]);
-            double const deviation = (Vector(f[0], f[1], f[2]) - (Vector::UnitY() - normal.y() * normal)).norm();
+            double const deviation =
+                (Vector(f[0], f[1], f[2]) - (Vector::UnitY() - normal.y() * normal)).norm();
             worst = std::max(worst, deviation);
             numOff += deviation > 1e-5;
         }
@@ -230,18 +278,27 @@ TEST_F(CliFieldBake, FlowIsTheVectorInTextureCoordinates) {
     };
     ASSERT_EQ(bake({"bake", spot, "-o", folder / "{map}.exr", "--maps", "field,position"}), 0);
     ASSERT_EQ(bake({"bake", spot, "-o", folder / "uv.exr", "--maps", "field", "--space", "uv"}), 0);
-    ASSERT_EQ(bake({"bake", spot, "-o", folder / "unit.exr", "--maps", "field", "--space", "uv", "--normalize", "--encode", "0.5,0.5"}), 0);
+    ASSERT_EQ(bake({"bake", spot, "-o", folder / "unit.exr", "--maps", "field", "--space", "uv",
+                    "--normalize", "--encode", "0.5,0.5"}),
+              0);
     int count = 0, numFar = 0;
     for (int y = 1; y < 511; y += 6) {
         for (int x = 1; x < 511; x += 6) {
-            auto const isCovered = [&](int dx, int dy) { return Look("position.exr", {"coverage"}, x + dx, y + dy)[0] >= 1.0; };
-            if (!isCovered(0, 0) || !isCovered(1, 0) || !isCovered(-1, 0) || !isCovered(0, 1) || !isCovered(0, -1)) continue;
+            auto const isCovered = [&](int dx, int dy) {
+                return Look("position.exr", {"coverage"}, x + dx, y + dy)[0] >= 1.0;
+            };
+            if (!isCovered(0, 0) || !isCovered(1, 0) || !isCovered(-1, 0) || !isCovered(0, 1) ||
+                !isCovered(0, -1))
+                continue;
             auto const at = [&](int dx, int dy) {
                 auto const p = Look("position.exr", {"R", "G", "B"}, x + dx, y + dy);
                 return Vector(p[0], p[1], p[2]);
             };
-            Vector const du = 256.0 * (at(1, 0) - at(-1, 0)), dv = 256.0 * (at(0, -1) - at(0, 1));  // v upwards
-            auto const flow = Look("uv.exr", {"R", "G"}, x, y), v = Look("field.exr", {"R", "G", "B"}, x, y), unit = Look("unit.exr", {"R", "G"}, x, y);
+            Vector const du = 256.0 * (at(1, 0) - at(-1, 0)),
+                         dv = 256.0 * (at(0, -1) - at(0, 1));  // v upwards
+            auto const flow = Look("uv.exr", {"R", "G"}, x, y),
+                       v = Look("field.exr", {"R", "G", "B"}, x, y),
+                       unit = Look("unit.exr", {"R", "G"}, x, y);
             ++count;
             numFar += (flow[0] * du + flow[1] * dv - Vector(v[0], v[1], v[2])).norm() > 0.03;
             Eigen::Vector2d const direction(2 * unit[0] - 1, 2 * unit[1] - 1);
@@ -255,16 +312,28 @@ TEST_F(CliFieldBake, FlowIsTheVectorInTextureCoordinates) {
 
 TEST_F(CliFieldBake, WhatIsWrongIsNamed) {
     std::string const edges = WriteGradientOfY(spot);
-    EXPECT_TRUE(Contains(ExpectError(Limn({"bake", spot, "-o", folder / "f.exr", "--maps", "field"}), 2), "--field"));
-    EXPECT_TRUE(Contains(ExpectError(Limn({"bake", spot, "-o", folder / "f.exr", "--maps", "field", "--field", edges, "--space", "tangent"}), 2), "object or uv"));
-    EXPECT_TRUE(Contains(ExpectError(Limn({"bake", spot, "-o", folder / "f.exr", "--maps", "normal", "--space", "uv"}), 2), "--space uv"));
+    EXPECT_TRUE(
+        Contains(ExpectError(Limn({"bake", spot, "-o", folder / "f.exr", "--maps", "field"}), 2),
+                 "--field"));
+    EXPECT_TRUE(Contains(ExpectError(Limn({"bake", spot, "-o", folder / "f.exr", "--maps", "field",
+                                           "--field", edges, "--space", "tangent"}),
+                                     2),
+                         "object or uv"));
+    EXPECT_TRUE(Contains(
+        ExpectError(
+            Limn({"bake", spot, "-o", folder / "f.exr", "--maps", "normal", "--space", "uv"}), 2),
+        "--space uv"));
     std::string const bad = folder.Write("bad.csv", "v0,v1,value\n0,1000,1\n");
-    EXPECT_TRUE(Contains(ExpectError(Limn({"bake", spot, "-o", folder / "f.exr", "--maps", "field", "--field", bad}), 3), "vertex 1000 does not exist"));
+    EXPECT_TRUE(Contains(
+        ExpectError(Limn({"bake", spot, "-o", folder / "f.exr", "--maps", "field", "--field", bad}),
+                    3),
+        "vertex 1000 does not exist"));
 }
 
 TEST_F(CliFieldBake, TheSameBytesForAnyNumberOfThreads) {
     for (std::string const threads : {"1", "4"}) {
-        ASSERT_EQ(Limn({"bake", spot, "-o", folder / (threads + ".exr"), "--maps", "field", "--field", WriteGradientOfY(spot), "--size", "128", "--space", "uv",
+        ASSERT_EQ(Limn({"bake", spot, "-o", folder / (threads + ".exr"), "--maps", "field",
+                        "--field", WriteGradientOfY(spot), "--size", "128", "--space", "uv",
                         "--normalize", "--samples", "2", "--preview", "--threads", threads})
                       .status,
                   0);
@@ -274,7 +343,19 @@ TEST_F(CliFieldBake, TheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST_F(CliFieldBake, AnotherFieldIsNotUpToDate) {
-    Words const words{"bake", spot, "-o", folder / "f.exr", "--maps", "field", "--field", WriteGradientOfY(spot), "--size", "64", "--skip-existing", "--report", folder / "r.json"};
+    Words const words{"bake",
+                      spot,
+                      "-o",
+                      folder / "f.exr",
+                      "--maps",
+                      "field",
+                      "--field",
+                      WriteGradientOfY(spot),
+                      "--size",
+                      "64",
+                      "--skip-existing",
+                      "--report",
+                      folder / "r.json"};
     ASSERT_EQ(Limn(words).status, 0);
     ASSERT_EQ(Limn(words).status, 0);
     EXPECT_TRUE(Report()["outputs"][0]["skipped"]);
@@ -285,7 +366,10 @@ TEST_F(CliFieldBake, AnotherFieldIsNotUpToDate) {
 }
 
 TEST_F(CliFieldBake, PreviewShowsStreaks) {
-    ASSERT_EQ(Limn({"bake", spot, "-o", folder / "f.exr", "--maps", "field", "--field", WriteGradientOfY(spot), "--size", "128", "--space", "uv", "--preview"}).status, 0);
+    ASSERT_EQ(Limn({"bake", spot, "-o", folder / "f.exr", "--maps", "field", "--field",
+                    WriteGradientOfY(spot), "--size", "128", "--space", "uv", "--preview"})
+                  .status,
+              0);
     EXPECT_TRUE(std::filesystem::exists(folder / "f.png"));
 }
 

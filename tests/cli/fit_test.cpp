@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
 #include "engine/io/mesh_reader.h"
@@ -11,19 +12,24 @@ using namespace test::cli;
 class CliFit : public testing::Test {
 protected:
     test::TemporaryFolder folder;
-    std::string cube = test::DataPath("golden_surface/cube.obj"), icosa = test::DataPath("golden_surface/icosa.obj"),
+    std::string cube = test::DataPath("golden_surface/cube.obj"),
+                icosa = test::DataPath("golden_surface/icosa.obj"),
                 grid = test::DataPath("golden_surface/gridholetri.obj");
 
     std::string MakePerturbedCube() const {
         std::string text = test::ReadText(cube);
-        text.replace(text.find("v "), text.find('\n', text.find("v ")) - text.find("v "), "v -0.9 -0.8 -1");
+        text.replace(text.find("v "), text.find('\n', text.find("v ")) - text.find("v "),
+                     "v -0.9 -0.8 -1");
         return folder.Write("perturbed.obj", text);
     }
     json Report() const { return ReadJson(folder / "r.json"); }
 };
 
 TEST_F(CliFit, ReportHasItsKeysAndTheOutputIsTheFit) {
-    ASSERT_EQ(Limn({"fit", icosa, "-o", folder / "a.obj", "--tolerance", "1e-12", "--precision", "double", "--report", folder / "r.json"}).status, 0);
+    ASSERT_EQ(Limn({"fit", icosa, "-o", folder / "a.obj", "--tolerance", "1e-12", "--precision",
+                    "double", "--report", folder / "r.json"})
+                  .status,
+              0);
     json const report = Report();
     EXPECT_EQ(report["method"], "chebyshev");
     EXPECT_TRUE(report["converged"]);
@@ -38,31 +44,46 @@ TEST_F(CliFit, ReportHasItsKeysAndTheOutputIsTheFit) {
     auto const fit = engine::ReadMesh(folder / "a.obj");
     auto const golden = test::LoadGoldenPoints("golden_surface/icosa_pi_cc_exact.obj");
     for (Index i = 0; i < golden.rows(); ++i) {
-        for (Index c = 0; c < 3; ++c) EXPECT_NEAR(fit.positions[static_cast<size_t>(3 * i + c)], golden(i, c), 1e-9);
+        for (Index c = 0; c < 3; ++c)
+            EXPECT_NEAR(fit.positions[static_cast<size_t>(3 * i + c)], golden(i, c), 1e-9);
     }
 }
 
 TEST_F(CliFit, EveryMethodIsTaken) {
-    for (std::string const method : {"progressive", "weighted", "chebyshev", "cg", "direct", "auto"}) {
-        EXPECT_EQ(Limn({"fit", grid, "-o", folder / "a.obj", "--method", method, "--report", folder / "r.json", "--quiet"}).status, 0) << method;
+    for (std::string const method :
+         {"progressive", "weighted", "chebyshev", "cg", "direct", "auto"}) {
+        EXPECT_EQ(Limn({"fit", grid, "-o", folder / "a.obj", "--method", method, "--report",
+                        folder / "r.json", "--quiet"})
+                      .status,
+                  0)
+            << method;
         if (method != "auto") {
             EXPECT_EQ(Report()["method"], method);
         }
         EXPECT_TRUE(Report()["converged"]);
     }
     for (std::string const scheme : {"catmark", "loop"}) {
-        EXPECT_EQ(Limn({"fit", icosa, "-o", folder / "a.obj", "--scheme", scheme, "--quiet"}).status, 0) << scheme;
+        EXPECT_EQ(
+            Limn({"fit", icosa, "-o", folder / "a.obj", "--scheme", scheme, "--quiet"}).status, 0)
+            << scheme;
     }
 }
 
 TEST_F(CliFit, TheSameBytesForAnyNumberOfThreads) {
-    ASSERT_EQ(Limn({"fit", Shape("catmark_car"), "-o", folder / "a.obj", "--threads", "1", "--quiet"}).status, 0);
-    ASSERT_EQ(Limn({"fit", Shape("catmark_car"), "-o", folder / "b.obj", "--threads", "4", "--quiet"}).status, 0);
+    ASSERT_EQ(
+        Limn({"fit", Shape("catmark_car"), "-o", folder / "a.obj", "--threads", "1", "--quiet"})
+            .status,
+        0);
+    ASSERT_EQ(
+        Limn({"fit", Shape("catmark_car"), "-o", folder / "b.obj", "--threads", "4", "--quiet"})
+            .status,
+        0);
     EXPECT_EQ(test::ReadText(folder / "a.obj"), test::ReadText(folder / "b.obj"));
 }
 
 TEST_F(CliFit, ASingularMeshInRangeIsSolvedWithAWarning) {
-    Outcome const outcome = Limn({"fit", cube, "-o", folder / "a.obj", "--report", folder / "r.json"});
+    Outcome const outcome =
+        Limn({"fit", cube, "-o", folder / "a.obj", "--report", folder / "r.json"});
     EXPECT_EQ(outcome.status, 0);
     EXPECT_TRUE(Contains(outcome.err, "minimum norm")) << outcome.err;
     EXPECT_EQ(Report()["singular_components"].size(), 1u);
@@ -72,7 +93,8 @@ TEST_F(CliFit, ASingularMeshInRangeIsSolvedWithAWarning) {
 
 TEST_F(CliFit, OffTheRangeItIsStatus4AndNothingIsWritten) {
     std::string const mesh = MakePerturbedCube();
-    std::string const error = ExpectError(Limn({"fit", mesh, "-o", folder / "a.obj", "--report", folder / "r.json"}), 4);
+    std::string const error =
+        ExpectError(Limn({"fit", mesh, "-o", folder / "a.obj", "--report", folder / "r.json"}), 4);
     EXPECT_TRUE(Contains(error, "--alpha 0.5")) << error;
     EXPECT_TRUE(Contains(error, "component of vertex 0 (8 vertices)")) << error;
     EXPECT_FALSE(Report()["converged"]);
@@ -84,27 +106,44 @@ TEST_F(CliFit, OffTheRangeItIsStatus4AndNothingIsWritten) {
 
 TEST_F(CliFit, AlphaWritesTheFinerMeshUnlessTold) {
     std::string const mesh = MakePerturbedCube();
-    ASSERT_EQ(Limn({"fit", mesh, "-o", folder / "a.obj", "--alpha", "0.5", "--report", folder / "r.json"}).status, 0);
+    ASSERT_EQ(
+        Limn({"fit", mesh, "-o", folder / "a.obj", "--alpha", "0.5", "--report", folder / "r.json"})
+            .status,
+        0);
     EXPECT_EQ(engine::ReadMesh(folder / "a.obj").cage.numVertices, 26);
     EXPECT_LE(Report()["certificate"]["max"], 1.1e-6);
-    Outcome const kept = Limn({"fit", mesh, "-o", folder / "b.obj", "--alpha", "0.5", "--keep-topology"});
+    Outcome const kept =
+        Limn({"fit", mesh, "-o", folder / "b.obj", "--alpha", "0.5", "--keep-topology"});
     EXPECT_EQ(kept.status, 0);
     EXPECT_TRUE(Contains(kept.err, "warning")) << kept.err;
     EXPECT_EQ(engine::ReadMesh(folder / "b.obj").cage.numVertices, 8);
 }
 
 TEST_F(CliFit, AtLevelFitsTheRefinedPoints) {
-    ASSERT_EQ(Limn({"fit", Shape("catmark_cubes_semisharp"), "-o", folder / "a.obj", "--at-level", "2", "--report", folder / "r.json", "--quiet"}).status, 0);
-    ASSERT_EQ(Limn({"refine", Shape("catmark_cubes_semisharp"), "-o", folder / "b.obj", "--levels", "2", "--quiet"}).status, 0);
-    EXPECT_EQ(engine::ReadMesh(folder / "a.obj").cage.faceVertices, engine::ReadMesh(folder / "b.obj").cage.faceVertices);
+    ASSERT_EQ(Limn({"fit", Shape("catmark_cubes_semisharp"), "-o", folder / "a.obj", "--at-level",
+                    "2", "--report", folder / "r.json", "--quiet"})
+                  .status,
+              0);
+    ASSERT_EQ(Limn({"refine", Shape("catmark_cubes_semisharp"), "-o", folder / "b.obj", "--levels",
+                    "2", "--quiet"})
+                  .status,
+              0);
+    EXPECT_EQ(engine::ReadMesh(folder / "a.obj").cage.faceVertices,
+              engine::ReadMesh(folder / "b.obj").cage.faceVertices);
     EXPECT_TRUE(Report()["converged"]);
 }
 
 TEST_F(CliFit, PrimvarsOfAPlyAreFitted) {
-    std::string text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float heat\n"
-                       "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 1\n1 0 0 2\n1 1 0 3\n0 1 0 5\n4 0 1 2 3\n";
+    std::string text =
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
+        "float z\nproperty float heat\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 1\n1 0 0 2\n1 1 "
+        "0 3\n0 1 0 5\n4 0 1 2 3\n";
     std::string const mesh = folder.Write("a.ply", text);
-    ASSERT_EQ(Limn({"fit", mesh, "-o", folder / "b.ply", "--boundary", "edge-only", "--report", folder / "r.json"}).status, 0);
+    ASSERT_EQ(Limn({"fit", mesh, "-o", folder / "b.ply", "--boundary", "edge-only", "--report",
+                    folder / "r.json"})
+                  .status,
+              0);
     auto const fit = engine::ReadMesh(folder / "b.ply");
     ASSERT_EQ(fit.primvars.size(), 1u);
     auto const& heat = fit.primvars[0].values;  // the boundary curve: (1,4,1)/6 of it is the data
@@ -117,23 +156,30 @@ TEST_F(CliFit, UsageErrorsAreStatus2) {
     ExpectError(Limn({"fit", icosa, "-o", folder / "a.obj", "--method", "magic"}), 2);
     ExpectError(Limn({"fit", icosa, "-o", folder / "a.obj", "--tolerance", "0"}), 2);
     ExpectError(Limn({"fit", icosa, "-o", folder / "a.obj", "--alpha", "2"}), 2);
-    ExpectError(Limn({"fit", icosa, "-o", folder / "a.obj", "--alpha", "0.5", "--scheme", "loop"}), 2);
+    ExpectError(Limn({"fit", icosa, "-o", folder / "a.obj", "--alpha", "0.5", "--scheme", "loop"}),
+                2);
     ExpectError(Limn({"fit", icosa, "-o", folder / "a.obj", "--keep-topology"}), 2);
     ExpectError(Limn({"bands", icosa, "-o", folder / "a", "--count", "0"}), 2);
-    ExpectError(Limn({"sharpen", icosa, "-o", folder / "a.obj", "--from-band", "4", "--to-band", "3"}), 2);
+    ExpectError(
+        Limn({"sharpen", icosa, "-o", folder / "a.obj", "--from-band", "4", "--to-band", "3"}), 2);
     ExpectError(Limn({"sharpen", icosa, "-o", folder / "a.obj", "--from-band", "0"}), 2);
     ExpectError(Limn({"morph", icosa, icosa, "-o", folder / "a", "--rate", "1"}), 2);
     EXPECT_TRUE(folder.List().empty());
 }
 
 TEST_F(CliFit, TooFewIterationsAreStatus4WithTheWorstVertex) {
-    std::string const error = ExpectError(Limn({"fit", grid, "-o", folder / "a.obj", "--method", "progressive", "--max-iterations", "3"}), 4);
+    std::string const error = ExpectError(Limn({"fit", grid, "-o", folder / "a.obj", "--method",
+                                                "progressive", "--max-iterations", "3"}),
+                                          4);
     EXPECT_TRUE(Contains(error, "worst at vertex")) << error;
     EXPECT_TRUE(folder.List().empty());
 }
 
 TEST_F(CliFit, BandsAddUpToTheInput) {
-    ASSERT_EQ(Limn({"bands", icosa, "-o", folder / "a", "--count", "2", "--precision", "double", "--report", folder / "r.json"}).status, 0);
+    ASSERT_EQ(Limn({"bands", icosa, "-o", folder / "a", "--count", "2", "--precision", "double",
+                    "--report", folder / "r.json"})
+                  .status,
+              0);
     auto const input = engine::ReadMesh(icosa);
     std::vector<double> sum(input.positions.size(), 0.0);
     for (char const* name : {"a.band0.obj", "a.band1.obj", "a.remainder.obj"}) {
@@ -146,28 +192,36 @@ TEST_F(CliFit, BandsAddUpToTheInput) {
 
 TEST_F(CliFit, FiltersReportVolumeAndBoxBeforeAndAfter) {
     for (std::string const verb : {"denoise", "sharpen"}) {
-        ASSERT_EQ(Limn({verb, icosa, "-o", folder / "a.obj", "--report", folder / "r.json"}).status, 0);
+        ASSERT_EQ(Limn({verb, icosa, "-o", folder / "a.obj", "--report", folder / "r.json"}).status,
+                  0);
         json const report = Report();
         double const before = report["before"]["volume"], after = report["after"]["volume"];
         EXPECT_EQ(verb == "denoise", after < before);
         EXPECT_EQ(report["after"]["bounding_box"].size(), 2u);
     }
-    ASSERT_EQ(Limn({"denoise", grid, "-o", folder / "a.obj", "--report", folder / "r.json"}).status, 0);
+    ASSERT_EQ(Limn({"denoise", grid, "-o", folder / "a.obj", "--report", folder / "r.json"}).status,
+              0);
     EXPECT_TRUE(Report()["before"]["volume"].is_null());
 }
 
 TEST_F(CliFit, MorphWritesNumberedMeshesOrNone) {
     std::string const mesh = MakePerturbedCube();
-    ASSERT_EQ(Limn({"morph", mesh, cube, "-o", folder / "m", "--steps", "3", "--report", folder / "r.json"}).status, 0);
-    EXPECT_EQ(folder.List(), (std::vector<std::string>{"m.0001.obj", "m.0002.obj", "m.0003.obj", "perturbed.obj", "r.json"}));
+    ASSERT_EQ(Limn({"morph", mesh, cube, "-o", folder / "m", "--steps", "3", "--report",
+                    folder / "r.json"})
+                  .status,
+              0);
+    EXPECT_EQ(folder.List(), (std::vector<std::string>{"m.0001.obj", "m.0002.obj", "m.0003.obj",
+                                                       "perturbed.obj", "r.json"}));
     std::string const error = ExpectError(Limn({"morph", icosa, cube, "-o", folder / "n"}), 3);
     EXPECT_TRUE(Contains(error, "12 and 8 vertices")) << error;
     EXPECT_EQ(folder.List().size(), 5u);
 }
 
 TEST_F(CliFit, BrokenMeshesAreStatus3AndNothingIsWritten) {
-    for (char const* file : {"malformed/test-nan.obj", "malformed/empty.obj", "malformed/invalid_index.obj"}) {
-        for (std::string const verb : {"fit", "denoise", "sharpen"}) ExpectError(Limn({verb, test::DataPath(file), "-o", folder / "a.obj"}), 3);
+    for (char const* file :
+         {"malformed/test-nan.obj", "malformed/empty.obj", "malformed/invalid_index.obj"}) {
+        for (std::string const verb : {"fit", "denoise", "sharpen"})
+            ExpectError(Limn({verb, test::DataPath(file), "-o", folder / "a.obj"}), 3);
     }
     ExpectError(Limn({"fit", folder / "missing.obj", "-o", folder / "a.obj"}), 5);
     ExpectError(Limn({"bands", icosa, "-o", folder / "no/such/a", "--count", "2"}), 5);
@@ -175,7 +229,8 @@ TEST_F(CliFit, BrokenMeshesAreStatus3AndNothingIsWritten) {
 }
 
 TEST_F(CliFit, NonManifoldMeshesAndValence2AreFittedWithWarnings) {
-    for (char const* name : {"catmark_nonman_edges", "catmark_nonman_verts", "catmark_val2_interior"}) {
+    for (char const* name :
+         {"catmark_nonman_edges", "catmark_nonman_verts", "catmark_val2_interior"}) {
         Outcome const outcome = Limn({"fit", Shape(name), "-o", folder / "a.obj"});
         EXPECT_EQ(outcome.status, 0) << name << outcome.err;
     }

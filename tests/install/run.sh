@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Installs a build tree into a scratch prefix and builds and runs a consumer and the example against it.
 # usage: run.sh BUILD-TREE SOURCE-OF-CONSUMER SOURCE-OF-EXAMPLE SCRATCH
 set -eu

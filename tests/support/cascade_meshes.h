@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -51,19 +52,23 @@ inline EdgeLengths MeasureEdges(engine::Scene const& scene) {
 }
 
 /// Levels 1 to `count` of a scene's own refinement.
-inline std::list<far_ext::CascadeLevel> QuarterLevels(engine::Scene const& scene, int count, far_ext::BoundaryRule rule) {
+inline std::list<far_ext::CascadeLevel> QuarterLevels(engine::Scene const& scene, int count,
+                                                      far_ext::BoundaryRule rule) {
     auto const refiner = MakeRefiner(scene, count);
     std::list<far_ext::CascadeLevel> levels;
     for (int k = 1; k <= count; ++k) {
         std::vector<Index> const coarse = k == 1 ? std::vector<Index>{} : levels.back().vertices;
-        levels.push_back(far_ext::BuildCascadeLevel(far_ext::MakeCascadeMesh(*refiner, k), coarse, rule));
+        levels.push_back(
+            far_ext::BuildCascadeLevel(far_ext::MakeCascadeMesh(*refiner, k), coarse, rule));
     }
     return levels;
 }
 
 /// Levels after 1 to `count` passes of bisection.
-inline std::list<far_ext::CascadeLevel> BisectLevels(engine::Scene const& scene, int count, far_ext::BoundaryRule rule) {
-    far_ext::Bisection bisection(scene.cage.numVertices, scene.cage.faceVertices, scene.positions, {}, {});
+inline std::list<far_ext::CascadeLevel> BisectLevels(engine::Scene const& scene, int count,
+                                                     far_ext::BoundaryRule rule) {
+    far_ext::Bisection bisection(scene.cage.numVertices, scene.cage.faceVertices, scene.positions,
+                                 {}, {});
     std::list<far_ext::CascadeLevel> levels;
     for (int k = 1; k <= count; ++k) {
         std::vector<Index> const coarse = k == 1 ? std::vector<Index>{} : levels.back().vertices;
@@ -72,9 +77,12 @@ inline std::list<far_ext::CascadeLevel> BisectLevels(engine::Scene const& scene,
     return levels;
 }
 
-/// Positions after a step on each level; Jacobi sweeps and untolerant conjugate gradients by the a-priori rule.
-inline std::vector<double> Filter(engine::Scene const& scene, std::list<far_ext::CascadeLevel> const& levels,
-                                  eval::CascadeOptions const& options, std::vector<double> const& widths = {}, int finestSweeps = 1) {
+/// Positions after a step on each level; Jacobi sweeps and untolerant conjugate gradients by the
+/// a-priori rule.
+inline std::vector<double> Filter(engine::Scene const& scene,
+                                  std::list<far_ext::CascadeLevel> const& levels,
+                                  eval::CascadeOptions const& options,
+                                  std::vector<double> const& widths = {}, int finestSweeps = 1) {
     eval::Cascade<double> cascade(scene.positions, widths, options);
     int left = static_cast<int>(levels.size());
     for (far_ext::CascadeLevel const& level : levels) {
@@ -83,7 +91,8 @@ inline std::vector<double> Filter(engine::Scene const& scene, std::list<far_ext:
     return cascade.GetPositions();
 }
 
-/// A mesh as it is, without refinement: each vertex is its own parent. Faces of 3 or 4 corners, all alike.
+/// A mesh as it is, without refinement: each vertex is its own parent. Faces of 3 or 4 corners, all
+/// alike.
 inline far_ext::CascadeMesh MakeSameMesh(engine::Scene const& scene) {
     far_ext::CascadeMesh mesh;
     mesh.numVertices = scene.cage.numVertices;
@@ -103,12 +112,14 @@ inline Eigen::Vector3d PointAt(std::vector<double> const& points, Index vertex) 
 inline double const kPi = std::acos(-1.0);
 
 /// Solvers with their tolerances; at 0 conjugate gradients run by count, without a preconditioner.
-inline std::vector<std::pair<eval::CascadeSolver, double>> const kSolvers{{eval::CascadeSolver::Exact, 0.0},
-                                                                          {eval::CascadeSolver::ConjugateGradients, 0.0},
-                                                                          {eval::CascadeSolver::ConjugateGradients, 1e-6},
-                                                                          {eval::CascadeSolver::Jacobi, 0.0}};
+inline std::vector<std::pair<eval::CascadeSolver, double>> const kSolvers{
+    {eval::CascadeSolver::Exact, 0.0},
+    {eval::CascadeSolver::ConjugateGradients, 0.0},
+    {eval::CascadeSolver::ConjugateGradients, 1e-6},
+    {eval::CascadeSolver::Jacobi, 0.0}};
 
-inline std::vector<double> Transform(std::vector<double> points, Eigen::Matrix3d const& matrix, Eigen::Vector3d const& shift) {
+inline std::vector<double> Transform(std::vector<double> points, Eigen::Matrix3d const& matrix,
+                                     Eigen::Vector3d const& shift) {
     for (size_t i = 0; i < points.size(); i += 3) {
         Eigen::Map<Eigen::Vector3d> point(&points[i]);
         point = (matrix * point + shift).eval();
@@ -122,7 +133,8 @@ inline double MinAngleDegrees(std::vector<double> const& points, far_ext::Cascad
     for (size_t corner = 0; corner < mesh.faces.size(); ++corner) {
         size_t const face = corner / 3 * 3, k = corner - face;
         Eigen::Vector3d const at = PointAt(points, mesh.faces[corner]);
-        Eigen::Vector3d const a = PointAt(points, mesh.faces[face + (k + 1) % 3]) - at, b = PointAt(points, mesh.faces[face + (k + 2) % 3]) - at;
+        Eigen::Vector3d const a = PointAt(points, mesh.faces[face + (k + 1) % 3]) - at,
+                              b = PointAt(points, mesh.faces[face + (k + 2) % 3]) - at;
         least = std::min(least, std::atan2(a.cross(b).norm(), a.dot(b)));
     }
     return least * 180 / kPi;
@@ -134,7 +146,8 @@ inline bool AreFinite(std::vector<double> const& points) {
 
 inline double MeanRadius(std::vector<double> const& points) {
     double sum = 0.0;
-    for (size_t i = 0; i < points.size(); i += 3) sum += std::hypot(points[i], points[i + 1], points[i + 2]);
+    for (size_t i = 0; i < points.size(); i += 3)
+        sum += std::hypot(points[i], points[i + 1], points[i + 2]);
     return 3.0 * sum / static_cast<double>(points.size());
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -18,7 +19,9 @@ using nlohmann::json;
 using test::Outcome;
 using Words = std::vector<std::string>;
 
-inline std::string Shape(std::string const& name) { return test::DataPath("opensubdiv_shapes/" + name + ".obj"); }
+inline std::string Shape(std::string const& name) {
+    return test::DataPath("opensubdiv_shapes/" + name + ".obj");
+}
 
 inline Outcome Limn(Words arguments, test::RunOptions const& options = {}) {
     arguments.insert(arguments.begin(), LIMN_PROGRAM);
@@ -32,7 +35,8 @@ inline std::vector<std::string> Lines(std::string const& text) {
     return lines;
 }
 
-/// The error line; the test fails unless there is exactly one, the last of stderr, and the status fits.
+/// The error line; the test fails unless there is exactly one, the last of stderr, and the status
+/// fits.
 inline std::string ExpectError(Outcome const& outcome, int status) {
     EXPECT_EQ(outcome.status, status) << outcome.err;
     auto const lines = Lines(outcome.err);
@@ -45,8 +49,12 @@ inline std::string ExpectError(Outcome const& outcome, int status) {
     return lines.back();
 }
 
-inline bool Contains(std::string const& text, std::string const& part) { return text.find(part) != std::string::npos; }
+inline bool Contains(std::string const& text, std::string const& part) {
+    return text.find(part) != std::string::npos;
+}
 
-inline json ReadJson(std::string const& path) { return json::parse(test::ReadText(path)); }
+inline json ReadJson(std::string const& path) {
+    return json::parse(test::ReadText(path));
+}
 
 }  // namespace limn::test::cli

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -30,7 +31,8 @@ inline void WriteText(std::string const& path, std::string const& text) {
 class TemporaryFolder {
 public:
     /// mkdtemp puts a name of its own in place of the six letters.
-    TemporaryFolder() : _path((std::filesystem::temp_directory_path() / "limn_").string() + std::string(6, 'X')) {
+    TemporaryFolder()
+        : _path((std::filesystem::temp_directory_path() / "limn_").string() + std::string(6, 'X')) {
         if (!::mkdtemp(_path.data())) throw std::runtime_error("no temporary folder");
     }
     ~TemporaryFolder() {
@@ -80,10 +82,18 @@ inline std::string Damage(std::string text, unsigned seed) {
     for (int i = 0; i < 6 && !text.empty(); ++i) {
         size_t const at = random() % text.size();
         switch (random() % 4) {
-            case 0: text[at] = static_cast<char>(random()); break;
-            case 1: text.erase(at, 1 + random() % 8); break;
-            case 2: text.insert(at, text.substr(random() % text.size(), random() % 16)); break;
-            default: text[at] = "0123456789-/. \n"[random() % 15]; break;
+            case 0:
+                text[at] = static_cast<char>(random());
+                break;
+            case 1:
+                text.erase(at, 1 + random() % 8);
+                break;
+            case 2:
+                text.insert(at, text.substr(random() % text.size(), random() % 16));
+                break;
+            default:
+                text[at] = "0123456789-/. \n"[random() % 15];
+                break;
         }
     }
     return text;

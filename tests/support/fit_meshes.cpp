@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "support/fit_meshes.h"
 
 #include <cmath>
@@ -14,7 +15,8 @@ namespace {
 /// Triangles with what lies across each edge, for flipping.
 class TriangleFlipper {
 public:
-    explicit TriangleFlipper(engine::Scene& scene) : _v(scene.cage.faceVertices), _valence(static_cast<size_t>(scene.cage.numVertices), 0) {
+    explicit TriangleFlipper(engine::Scene& scene)
+        : _v(scene.cage.faceVertices), _valence(static_cast<size_t>(scene.cage.numVertices), 0) {
         auto const refiner = far_ext::CreateRefiner(scene.cage);
         auto const level = refiner->GetLevel(0);
         _across.assign(_v.size(), -1);
@@ -31,9 +33,12 @@ public:
 
     void Flip(int e) {
         int const other = At(_across, e), f = e / 3 * 3, g = other / 3 * 3;
-        Index const a = At(_v, e), b = At(_v, Next(e)), c = At(_v, Next(Next(e))), d = At(_v, Next(Next(other)));
-        if (At(_valence, a) <= 3 || At(_valence, b) <= 3 || c == d || AreJoined(Next(Next(e)), d)) return;
-        int const bc = At(_across, Next(e)), ca = At(_across, Next(Next(e))), ad = At(_across, Next(other)), db = At(_across, Next(Next(other)));
+        Index const a = At(_v, e), b = At(_v, Next(e)), c = At(_v, Next(Next(e))),
+                    d = At(_v, Next(Next(other)));
+        if (At(_valence, a) <= 3 || At(_valence, b) <= 3 || c == d || AreJoined(Next(Next(e)), d))
+            return;
+        int const bc = At(_across, Next(e)), ca = At(_across, Next(Next(e))),
+                  ad = At(_across, Next(other)), db = At(_across, Next(Next(other)));
         Set(f, {c, a, d});
         Set(g, {d, b, c});
         Meet(f, ca);
@@ -49,10 +54,14 @@ public:
 
 private:
     template <class T>
-    static T& At(std::vector<T>& values, int i) { return values[static_cast<size_t>(i)]; }
+    static T& At(std::vector<T>& values, int i) {
+        return values[static_cast<size_t>(i)];
+    }
     static int Next(int e) { return e % 3 == 2 ? e - 2 : e + 1; }
 
-    void Set(int first, std::array<Index, 3> const& corners) { std::copy(corners.begin(), corners.end(), _v.begin() + first); }
+    void Set(int first, std::array<Index, 3> const& corners) {
+        std::copy(corners.begin(), corners.end(), _v.begin() + first);
+    }
     void Meet(int e, int other) {
         At(_across, e) = other;
         At(_across, other) = e;
@@ -77,11 +86,14 @@ engine::Scene MakeIrregularTriangles(int n, int m, unsigned seed) {
     engine::Scene scene = MakeTriangleTorus(n, m);
     TriangleFlipper flipper(scene);
     std::mt19937 random(seed);
-    for (int i = flipper.GetNumEdges() / 3; i > 0; --i) flipper.Flip(static_cast<int>(random() % static_cast<unsigned>(flipper.GetNumEdges())));
+    for (int i = flipper.GetNumEdges() / 3; i > 0; --i)
+        flipper.Flip(static_cast<int>(random() % static_cast<unsigned>(flipper.GetNumEdges())));
     return scene;
 }
 
-engine::Scene Refine(engine::Scene const& scene, int levels) { return engine::RefineUniformly(scene, levels, false); }
+engine::Scene Refine(engine::Scene const& scene, int levels) {
+    return engine::RefineUniformly(scene, levels, false);
+}
 
 namespace {
 
@@ -96,7 +108,9 @@ engine::Scene ToSphere(engine::Scene scene) {
 
 }  // namespace
 
-engine::Scene MakeQuadSphere(int levels) { return ToSphere(Refine(MakeCube(), levels)); }
+engine::Scene MakeQuadSphere(int levels) {
+    return ToSphere(Refine(MakeCube(), levels));
+}
 
 engine::Scene MakeIcosphere(int levels) {
     engine::Scene scene = LoadData("golden_surface/icosa.obj");
@@ -122,7 +136,8 @@ engine::Scene MakePrism(int n) {
     std::vector<std::vector<Index>> faces(2);
     for (int i = 0; i < n; ++i) {
         double const angle = 2 * std::acos(-1.0) * i / n;
-        for (double z : {-1.0, 1.0}) positions.insert(positions.end(), {std::cos(angle), std::sin(angle), z});
+        for (double z : {-1.0, 1.0})
+            positions.insert(positions.end(), {std::cos(angle), std::sin(angle), z});
         faces[0].insert(faces[0].begin(), 2 * i);
         faces[1].push_back(2 * i + 1);
         int const next = (i + 1) % n;
@@ -136,7 +151,8 @@ engine::Scene MakeGridWithHole(int n, int m) {
     std::vector<std::vector<Index>> faces;
     for (int i = 0; i <= n; ++i) {
         for (int j = 0; j <= m; ++j) {
-            positions.insert(positions.end(), {static_cast<double>(i), static_cast<double>(j), std::sin(0.7 * i) * std::cos(0.9 * j)});
+            positions.insert(positions.end(), {static_cast<double>(i), static_cast<double>(j),
+                                               std::sin(0.7 * i) * std::cos(0.9 * j)});
         }
     }
     for (int i = 0; i < n; ++i) {
@@ -156,7 +172,8 @@ void AddNoise(engine::Scene& scene, double share, unsigned seed) {
     for (int size : cage.faceSizes) {
         for (int i = 0; i < size; ++i) {
             double const* const a = point(cage.faceVertices[corner + static_cast<size_t>(i)]);
-            double const* const b = point(cage.faceVertices[corner + static_cast<size_t>((i + 1) % size)]);
+            double const* const b =
+                point(cage.faceVertices[corner + static_cast<size_t>((i + 1) % size)]);
             sum += std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
         }
         corner += static_cast<size_t>(size);
@@ -171,8 +188,10 @@ engine::Scene Join(std::vector<engine::Scene> const& scenes) {
     for (size_t i = 1; i < scenes.size(); ++i) {
         Index const first = all.cage.numVertices;
         auto const& cage = scenes[i].cage;
-        all.positions.insert(all.positions.end(), scenes[i].positions.begin(), scenes[i].positions.end());
-        all.cage.faceSizes.insert(all.cage.faceSizes.end(), cage.faceSizes.begin(), cage.faceSizes.end());
+        all.positions.insert(all.positions.end(), scenes[i].positions.begin(),
+                             scenes[i].positions.end());
+        all.cage.faceSizes.insert(all.cage.faceSizes.end(), cage.faceSizes.begin(),
+                                  cage.faceSizes.end());
         for (Index vertex : cage.faceVertices) all.cage.faceVertices.push_back(first + vertex);
         all.cage.numVertices += cage.numVertices;
     }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "engine/scene/scene.h"
@@ -7,8 +8,8 @@ namespace limn::test {
 /// A torus of triangles whose edges have been flipped at random: valences 3 to about 11.
 engine::Scene MakeIrregularTriangles(int n, int m, unsigned seed);
 
-/// A scene refined by its own scheme. Triangles refined once by Catmull-Clark are quads with the valences of
-/// the triangles, 4 at edges and 3 in faces.
+/// A scene refined by its own scheme. Triangles refined once by Catmull-Clark are quads with the
+/// valences of the triangles, 4 at edges and 3 in faces.
 engine::Scene Refine(engine::Scene const& scene, int levels);
 
 /// A cube refined and moved to the unit sphere: 8, 26, 98, 386, 1538, 6146 vertices.

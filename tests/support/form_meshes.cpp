@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "support/form_meshes.h"
 
 #include <cmath>
@@ -15,25 +16,32 @@ engine::Scene MakeOpenFan(int count, Sdc::SchemeType scheme) {
     double const angle = std::acos(-1.0) / count;
     for (int i = 0; i <= count; ++i) {
         positions.insert(positions.end(), {std::cos(angle * i), std::sin(angle * i), 0.1 * i});
-        if (!isLoop) positions.insert(positions.end(), {1.6 * std::cos(angle * (i + 0.5)), 1.6 * std::sin(angle * (i + 0.5)), 0.0});
+        if (!isLoop)
+            positions.insert(positions.end(), {1.6 * std::cos(angle * (i + 0.5)),
+                                               1.6 * std::sin(angle * (i + 0.5)), 0.0});
     }
     for (int i = 0; i < count; ++i) {
-        if (isLoop) faces.push_back({0, 1 + i, 2 + i});
-        else faces.push_back({0, 1 + 2 * i, 2 + 2 * i, 3 + 2 * i});
+        if (isLoop)
+            faces.push_back({0, 1 + i, 2 + i});
+        else
+            faces.push_back({0, 1 + 2 * i, 2 + 2 * i, 3 + 2 * i});
     }
     if (!isLoop) positions.resize(positions.size() - 3);  // no far corner after the last face
     return MakeScene(std::move(positions), faces, scheme);
 }
 
 engine::Scene MakeTetrahedron() {
-    return MakeScene({1, 1, 1, -1, -1, 1, -1, 1, -1, 1, -1, -1}, {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}, Sdc::SCHEME_LOOP);
+    return MakeScene({1, 1, 1, -1, -1, 1, -1, 1, -1, 1, -1, -1},
+                     {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}, Sdc::SCHEME_LOOP);
 }
 
 engine::Scene MakeLattice(int n, int m, Sdc::SchemeType scheme) {
     std::vector<double> positions;
     std::vector<std::vector<Index>> faces;
     for (int j = 0; j <= m; ++j) {
-        for (int i = 0; i <= n; ++i) positions.insert(positions.end(), {static_cast<double>(i), static_cast<double>(j), 0.0});
+        for (int i = 0; i <= n; ++i)
+            positions.insert(positions.end(),
+                             {static_cast<double>(i), static_cast<double>(j), 0.0});
     }
     for (int j = 0; j < m; ++j) {
         for (int i = 0; i < n; ++i) {
@@ -54,11 +62,13 @@ engine::Scene MakeDodecahedron() {
     engine::Scene const icosahedron = MakeIcosphere(0);
     auto const& v = icosahedron.cage.faceVertices;
     std::vector<double> positions;
-    std::map<std::pair<Index, Index>, Index> faceAfter;  // of a directed edge, the face that runs along it
+    std::map<std::pair<Index, Index>, Index>
+        faceAfter;  // of a directed edge, the face that runs along it
     for (Index f = 0; f < static_cast<Index>(v.size() / 3); ++f) {
         for (size_t c = 0; c < 3; ++c) {
             double sum = 0.0;
-            for (size_t j = 0; j < 3; ++j) sum += icosahedron.positions[3 * static_cast<size_t>(v[3 * f + j]) + c];
+            for (size_t j = 0; j < 3; ++j)
+                sum += icosahedron.positions[3 * static_cast<size_t>(v[3 * f + j]) + c];
             positions.push_back(sum / 3.0);
         }
         for (size_t j = 0; j < 3; ++j) faceAfter[{v[3 * f + j], v[3 * f + (j + 1) % 3]}] = f;
@@ -67,14 +77,19 @@ engine::Scene MakeDodecahedron() {
     for (Index vertex = 0; vertex < icosahedron.cage.numVertices; ++vertex) {
         Index first = -1;
         for (auto const& [edge, face] : faceAfter) {
-            if (edge.first == vertex) { first = face; break; }
+            if (edge.first == vertex) {
+                first = face;
+                break;
+            }
         }
         std::vector<Index> ring;
         for (Index face = first; ring.empty() || face != first;) {
             ring.push_back(face);
             size_t j = 0;
             while (v[3 * static_cast<size_t>(face) + j] != vertex) ++j;
-            face = faceAfter.at({vertex, v[3 * static_cast<size_t>(face) + (j + 2) % 3]});  // across the side that comes in
+            face = faceAfter.at(
+                {vertex,
+                 v[3 * static_cast<size_t>(face) + (j + 2) % 3]});  // across the side that comes in
         }
         faces.push_back(ring);
     }
@@ -88,7 +103,8 @@ void AddCreases(engine::Scene& scene, float sharpness, int count) {
     auto& cage = scene.cage;
     Index at = 0;
     for (int face = 0; face < count && face < static_cast<int>(cage.faceSizes.size()); ++face) {
-        cage.creaseVertexPairs.insert(cage.creaseVertexPairs.end(), {cage.faceVertices[at], cage.faceVertices[at + 1]});
+        cage.creaseVertexPairs.insert(cage.creaseVertexPairs.end(),
+                                      {cage.faceVertices[at], cage.faceVertices[at + 1]});
         cage.creaseSharpness.push_back(sharpness);
         at += cage.faceSizes[face];
     }
@@ -105,7 +121,9 @@ std::vector<std::pair<std::string, engine::Scene>> MakeFormMeshes() {
     constexpr auto kLoop = Sdc::SCHEME_LOOP;
     constexpr auto kCatmark = Sdc::SCHEME_CATMARK;
     std::vector<std::pair<std::string, engine::Scene>> meshes;
-    auto const add = [&](std::string name, engine::Scene scene) { meshes.emplace_back(std::move(name), std::move(scene)); };
+    auto const add = [&](std::string name, engine::Scene scene) {
+        meshes.emplace_back(std::move(name), std::move(scene));
+    };
     add("tetrahedron", MakeTetrahedron());
     add("icosahedron", MakeIcosphere(0));
     add("triangle torus", MakeTriangleTorus(6, 5));
@@ -130,14 +148,18 @@ std::vector<std::pair<std::string, engine::Scene>> MakeFormMeshes() {
     add("grid with hole", MakeGridWithHole(6, 5));
     add("dodecahedron", MakeDodecahedron());
     add("triangles under Catmull-Clark", WithScheme(MakeIrregularTriangles(7, 6, 2), kCatmark));
-    add("mixed open", MakeScene({0, 0, 0, 2, 0, 0, 4, 0, 0, 6, 1, 0, 5, 3, 0, 3, 2, 0, 1, 2, 0, 0, 4, 0, 2, 5, 0, 4, 5, 0},
-                                {{0, 1, 6}, {1, 2, 5, 6}, {2, 3, 4, 5}, {6, 5, 9, 8, 7}, {5, 4, 9}}));
+    add("mixed open",
+        MakeScene({0, 0, 0, 2, 0, 0, 4, 0, 0, 6, 1, 0, 5, 3, 0,
+                   3, 2, 0, 1, 2, 0, 0, 4, 0, 2, 5, 0, 4, 5, 0},
+                  {{0, 1, 6}, {1, 2, 5, 6}, {2, 3, 4, 5}, {6, 5, 9, 8, 7}, {5, 4, 9}}));
     add("two components", Join({MakeCube(), MakeTorus(5, 4)}));
     for (float sharpness : {10.0f, 0.3f, 1.0f, 2.7f}) {
         for (int count : {1, 2, 5, 40}) {
-            std::string const name = " with " + std::to_string(count) + " creases of " + std::to_string(sharpness);
+            std::string const name =
+                " with " + std::to_string(count) + " creases of " + std::to_string(sharpness);
             for (auto scheme : {kLoop, kCatmark}) {
-                engine::Scene scene = scheme == kLoop ? MakeIrregularTriangles(6, 5, 4) : MakeTorus(6, 5);
+                engine::Scene scene =
+                    scheme == kLoop ? MakeIrregularTriangles(6, 5, 4) : MakeTorus(6, 5);
                 AddCreases(scene, sharpness, count);
                 scene.cage.cornerVertices.push_back(3);
                 scene.cage.cornerSharpness.push_back(0.6f * sharpness);

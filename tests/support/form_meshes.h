@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
@@ -8,8 +9,9 @@
 
 namespace limn::test {
 
-/// The meshes on which the laws of subdivided forms are checked: closed, open, all boundary fans, valence 2 to 12, n-gons,
-/// creases of any sharpness, several components, genus 0 to 2; each with its name.
+/// The meshes on which the laws of subdivided forms are checked: closed, open, all boundary fans,
+/// valence 2 to 12, n-gons, creases of any sharpness, several components, genus 0 to 2; each with
+/// its name.
 std::vector<std::pair<std::string, engine::Scene>> MakeFormMeshes();
 
 /// A boundary fan: vertex 0 with `count` triangles (Loop) or quads, not closed.
@@ -18,7 +20,8 @@ engine::Scene MakeOpenFan(int count, Sdc::SchemeType scheme);
 /// The tetrahedron of the reference rows.
 engine::Scene MakeTetrahedron();
 
-/// A flat n x m grid of triangles (Loop) or quads whose diagonals all run the same way, with integer coordinates.
+/// A flat n x m grid of triangles (Loop) or quads whose diagonals all run the same way, with
+/// integer coordinates.
 engine::Scene MakeLattice(int n, int m, Sdc::SchemeType scheme);
 
 /// A dodecahedron of pentagons.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "support/meshes.h"
 
 #include <algorithm>
@@ -13,10 +14,16 @@ namespace limn::test {
 
 namespace fs = std::filesystem;
 
-std::string DataPath(std::string const& path) { return std::string(LIMN_TEST_DATA) + "/" + path; }
-std::string AssetPath(std::string const& path) { return std::string(LIMN_ASSETS) + "/" + path; }
+std::string DataPath(std::string const& path) {
+    return std::string(LIMN_TEST_DATA) + "/" + path;
+}
+std::string AssetPath(std::string const& path) {
+    return std::string(LIMN_ASSETS) + "/" + path;
+}
 
-engine::Scene LoadData(std::string const& path) { return engine::ReadMesh(DataPath(path)); }
+engine::Scene LoadData(std::string const& path) {
+    return engine::ReadMesh(DataPath(path));
+}
 
 Eigen::MatrixXd LoadGoldenPoints(std::string const& path) {
     std::ifstream file(DataPath(path));
@@ -28,11 +35,16 @@ Eigen::MatrixXd LoadGoldenPoints(std::string const& path) {
         }
         for (int c = 0; c < 3; ++c) file >> values.emplace_back();
     }
-    return Eigen::Map<Eigen::Matrix<double, -1, 3, Eigen::RowMajor> const>(values.data(), static_cast<Eigen::Index>(values.size() / 3), 3);
+    return Eigen::Map<Eigen::Matrix<double, -1, 3, Eigen::RowMajor> const>(
+        values.data(), static_cast<Eigen::Index>(values.size() / 3), 3);
 }
 
-bool HasAsset(std::string const& path) { return fs::exists(AssetPath(path)); }
-engine::Scene LoadAsset(std::string const& path) { return engine::ReadMesh(AssetPath(path)); }
+bool HasAsset(std::string const& path) {
+    return fs::exists(AssetPath(path));
+}
+engine::Scene LoadAsset(std::string const& path) {
+    return engine::ReadMesh(AssetPath(path));
+}
 
 std::vector<std::string> ListData(std::string const& folder) {
     std::vector<std::string> names;
@@ -66,14 +78,20 @@ engine::Scene MakeFan(int valence, Sdc::SchemeType scheme, double a, double b) {
     // Sector k spans directions k and k + 1; place (i, j) is i steps along one, j along the other.
     auto const vertex = [&](int sector, int i, int j) {
         std::vector<int> key;
-        if (i == 0 && j == 0) key = {0};
-        else if (i == 0) key = {1, (sector + 1) % valence, j};
-        else if (j == 0) key = {1, sector, i};
-        else key = {2, sector, i, j};
-        auto const [found, isNew] = vertices.try_emplace(key, static_cast<Index>(positions.size() / 3));
+        if (i == 0 && j == 0)
+            key = {0};
+        else if (i == 0)
+            key = {1, (sector + 1) % valence, j};
+        else if (j == 0)
+            key = {1, sector, i};
+        else
+            key = {2, sector, i, j};
+        auto const [found, isNew] =
+            vertices.try_emplace(key, static_cast<Index>(positions.size() / 3));
         if (isNew) {
             double const u = 2 * pi * sector / valence, v = 2 * pi * (sector + 1) / valence;
-            double const x = i * std::cos(u) + j * std::cos(v), y = i * std::sin(u) + j * std::sin(v);
+            double const x = i * std::cos(u) + j * std::cos(v),
+                         y = i * std::sin(u) + j * std::sin(v);
             positions.insert(positions.end(), {x, y, a * (x * x + y * y) + b * (x * x - y * y)});
         }
         return found->second;
@@ -105,8 +123,9 @@ std::vector<double> TorusPositions(int n, int m) {
         for (int j = 0; j < m; ++j) {
             double const a = 2 * pi * i / n, b = 2 * pi * j / m;
             double const r = 0.4 * (1 + 0.1 * std::sin(5 * a + 3 * b));
-            positions.insert(positions.end(), {(1 + r * std::cos(b)) * std::cos(a),
-                                               (1 + r * std::cos(b)) * std::sin(a), r * std::sin(b)});
+            positions.insert(positions.end(),
+                             {(1 + r * std::cos(b)) * std::cos(a),
+                              (1 + r * std::cos(b)) * std::sin(a), r * std::sin(b)});
         }
     }
     return positions;
@@ -151,8 +170,9 @@ engine::Scene MakeTriangleTorus(int n, int m) {
 }
 
 engine::Scene MakeCube() {
-    return MakeScene({-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, -1, -1, 1, 1, -1, 1, 1, 1, 1, -1, 1, 1},
-                     {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}});
+    return MakeScene(
+        {-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, -1, -1, 1, 1, -1, 1, 1, 1, 1, -1, 1, 1},
+        {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}});
 }
 
 }  // namespace limn::test

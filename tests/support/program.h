@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <csignal>
@@ -23,15 +24,16 @@ struct Outcome {
 
 struct RunOptions {
     std::vector<std::string> environment{};  ///< NAME=VALUE, beside what the test itself has
-    std::string folder{};                  ///< to run in; empty for the test's own
-    std::string stdoutPath{};              ///< where stdout goes instead of into Outcome::out
+    std::string folder{};                    ///< to run in; empty for the test's own
+    std::string stdoutPath{};                ///< where stdout goes instead of into Outcome::out
 };
 
 /// A program that runs beside the test. It is killed if the test ends before it.
 class Process {
 public:
     explicit Process(std::vector<std::string> command, RunOptions const& options = {}) {
-        std::string const outPath = options.stdoutPath.empty() ? _streams / "out" : options.stdoutPath;
+        std::string const outPath =
+            options.stdoutPath.empty() ? _streams / "out" : options.stdoutPath;
         std::string const errPath = _streams / "err";
         std::vector<char*> arguments;
         for (std::string& word : command) arguments.push_back(word.data());

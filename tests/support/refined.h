@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <cmath>
@@ -10,8 +11,8 @@
 #include "engine/scene/scene.h"
 #include "eval/differential/refine_values.h"
 #include "far_ext/error.h"
-#include "far_ext/topology/refiner.h"
 #include "far_ext/rows/sparse_rows.h"
+#include "far_ext/topology/refiner.h"
 #include "support/files.h"
 #include "support/fit_meshes.h"
 #include "support/meshes.h"
@@ -41,12 +42,14 @@ inline std::vector<double> LoadPoints(std::string const& name) {
     std::vector<double> points;
     for (std::string line; std::getline(text, line);) {
         double x, y, z;
-        if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) == 3) points.insert(points.end(), {x, y, z});
+        if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) == 3)
+            points.insert(points.end(), {x, y, z});
     }
     return points;
 }
 
-inline std::vector<double> Apply(far_ext::SparseRows const& rows, std::vector<double> const& points) {
+inline std::vector<double> Apply(far_ext::SparseRows const& rows,
+                                 std::vector<double> const& points) {
     std::vector<double> result(3 * static_cast<size_t>(rows.GetNumRows()));
     rows.Apply(points.data(), result.data(), 3);
     return result;
@@ -67,10 +70,12 @@ inline double BoxDiagonal(std::vector<double> const& points) {
 }
 
 /// Largest difference of two arrays, without regard to a translation if so asked.
-inline double LargestDifference(std::vector<double> const& a, std::vector<double> const& b, bool isUpToTranslation = false) {
+inline double LargestDifference(std::vector<double> const& a, std::vector<double> const& b,
+                                bool isUpToTranslation = false) {
     if (a.size() != b.size()) return 1e300;
     double shift[3] = {0, 0, 0};
-    for (size_t i = 0; isUpToTranslation && i < a.size(); ++i) shift[i % 3] += 3.0 * (a[i] - b[i]) / static_cast<double>(a.size());
+    for (size_t i = 0; isUpToTranslation && i < a.size(); ++i)
+        shift[i % 3] += 3.0 * (a[i] - b[i]) / static_cast<double>(a.size());
     double worst = 0.0;
     for (size_t i = 0; i < a.size(); ++i) {
         double const difference = std::abs(a[i] - b[i] - shift[i % 3]);
@@ -80,8 +85,10 @@ inline double LargestDifference(std::vector<double> const& a, std::vector<double
 }
 
 /// Points of the last level, subdivided and moved out to the unit sphere.
-inline std::vector<double> SubdivideToSphere(Far::TopologyRefiner const& refiner, std::vector<double> points) {
-    for (int level = 1; level <= refiner.GetMaxLevel(); ++level) points = eval::RefineValues<3>(refiner, level, points);
+inline std::vector<double> SubdivideToSphere(Far::TopologyRefiner const& refiner,
+                                             std::vector<double> points) {
+    for (int level = 1; level <= refiner.GetMaxLevel(); ++level)
+        points = eval::RefineValues<3>(refiner, level, points);
     for (size_t i = 0; i < points.size(); i += 3) {
         double const length = std::hypot(points[i], points[i + 1], points[i + 2]);
         for (size_t c = 0; c < 3; ++c) points[i + c] /= length;

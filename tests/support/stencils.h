@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <algorithm>
@@ -13,19 +14,21 @@
 
 namespace limn::test {
 
-inline std::unique_ptr<Far::TopologyRefiner> RefineUniformly(far_ext::ControlMesh const& cage, int level) {
+inline std::unique_ptr<Far::TopologyRefiner> RefineUniformly(far_ext::ControlMesh const& cage,
+                                                             int level) {
     auto refiner = far_ext::CreateRefiner(cage);
     refiner->RefineUniform(Far::TopologyRefiner::UniformOptions(level));
     return refiner;
 }
 
-// Tables by the names of their templates: Far::StencilTableFactory casts them to a class they are not of, which the
-// undefined-behaviour sanitizer reports.
+// Tables by the names of their templates: Far::StencilTableFactory casts them to a class they are
+// not of, which the undefined-behaviour sanitizer reports.
 using FarTable = Far::StencilTableReal<float>;
 using FarLimitTable = Far::LimitStencilTableReal<float>;
 
 /// Far's table of the last level.
-inline std::unique_ptr<FarTable const> MakeFarTable(Far::TopologyRefiner const& refiner, int interpolationMode) {
+inline std::unique_ptr<FarTable const> MakeFarTable(Far::TopologyRefiner const& refiner,
+                                                    int interpolationMode) {
     using Factory = Far::StencilTableFactoryReal<float>;
     Factory::Options options;
     options.interpolationMode = static_cast<unsigned>(interpolationMode) & 3u;
@@ -38,7 +41,8 @@ inline std::unique_ptr<FarTable const> MakeFarTable(Far::TopologyRefiner const& 
 ///
 /// \param refiner  refined by RefineAdaptive
 inline std::unique_ptr<FarLimitTable const> MakeFarLimitTable(Far::TopologyRefiner const& refiner) {
-    static float const s[] = {0.1f, 0.6f, 0.85f, 0.3f, 0.5f, 0.2f}, t[] = {0.2f, 0.3f, 0.1f, 0.65f, 0.45f, 0.05f};
+    static float const s[] = {0.1f, 0.6f, 0.85f, 0.3f, 0.5f, 0.2f},
+                       t[] = {0.2f, 0.3f, 0.1f, 0.65f, 0.45f, 0.05f};
     Far::PtexIndices const faces(refiner);
     using Factory = Far::LimitStencilTableFactoryReal<float>;
     Factory::LocationArrayVec places;
@@ -52,7 +56,8 @@ inline std::unique_ptr<FarLimitTable const> MakeFarLimitTable(Far::TopologyRefin
     }
     Factory::Options options;
     options.generate1stDerivatives = options.generate2ndDerivatives = true;
-    return std::unique_ptr<FarLimitTable const>(Factory::Create(refiner, places, nullptr, nullptr, options));
+    return std::unique_ptr<FarLimitTable const>(
+        Factory::Create(refiner, places, nullptr, nullptr, options));
 }
 
 inline std::vector<float> MakeRandomValues(size_t count, unsigned seed) {

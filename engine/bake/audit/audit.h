@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <vector>
@@ -18,7 +19,7 @@ struct AuditReport {
 /// \param bake   what Bake returned for the same scene and options
 /// \param bound  of the relative error of Gauss-Bonnet
 /// \throws Error Io where a file cannot be read back
-AuditReport Audit(Scene const& scene, Far::TopologyRefiner const& refiner, BakeOptions const& options,
-                  BakeReport const& bake, double bound, Job& job);
+AuditReport Audit(Scene const& scene, Far::TopologyRefiner const& refiner,
+                  BakeOptions const& options, BakeReport const& bake, double bound, Job& job);
 
 }  // namespace limn::engine

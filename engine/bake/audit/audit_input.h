@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <vector>
@@ -12,8 +13,8 @@ namespace limn::engine {
 
 /// What every audit of a bake looks at; all but the surfaces is kept by reference.
 struct AuditInput {
-    AuditInput(Scene const& bakedScene, Far::TopologyRefiner const& refiner, BakeOptions const& bakeOptions,
-               BakeReport const& bakeReport);
+    AuditInput(Scene const& bakedScene, Far::TopologyRefiner const& refiner,
+               BakeOptions const& bakeOptions, BakeReport const& bakeReport);
 
     TileGrid MakeGrid(int tile) const;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/audit/extraordinary_discs.h"
 
 #include <algorithm>
@@ -14,14 +15,17 @@ namespace {
 
 // Of spot, the chess knight and others at 500 to 2200 texels: 2 is as good as 4, 1 is twice as bad.
 constexpr double kTexelsOfFall = 4.0;
-// With 2 or 3 texels the knight's discs made its error four times what texels alone have; from 8 to 30 on they help.
+// With 2 or 3 texels the knight's discs made its error four times what texels alone have; from 8 to
+// 30 on they help.
 constexpr double kTexelsOfDisc = 16.0;
-// Far from the depth at which curvature is no longer taken where it is asked for (eval::FaceTree::kCurvatureDepth).
+// Far from the depth at which curvature is no longer taken where it is asked for
+// (eval::FaceTree::kCurvatureDepth).
 constexpr double kSmallest = 0x1p-10;
 
 }  // namespace
 
-ExtraordinaryDiscs::ExtraordinaryDiscs(AuditInput const& input, std::vector<char> const& isWanted) : _input(input) {
+ExtraordinaryDiscs::ExtraordinaryDiscs(AuditInput const& input, std::vector<char> const& isWanted)
+    : _input(input) {
     auto const& surface = input.surface;
     size_t count = 0;
     for (Index face = 0; face < surface.GetNumFaces(); ++face) {
@@ -41,7 +45,8 @@ ExtraordinaryDiscs::ExtraordinaryDiscs(AuditInput const& input, std::vector<char
         int const numDomains = surface.GetNumDomains(face);
         if (numDomains == 1 || !isWanted[face]) continue;
         Disc disc;
-        for (int domain = 0; domain < numDomains; ++domain) disc.sectors.push_back({face, domain, 2, 0.5});
+        for (int domain = 0; domain < numDomains; ++domain)
+            disc.sectors.push_back({face, domain, 2, 0.5});
         _discs.push_back(std::move(disc));
     }
     UVRaster raster(input.uvSurface, input.scene.uvs);
@@ -49,12 +54,14 @@ ExtraordinaryDiscs::ExtraordinaryDiscs(AuditInput const& input, std::vector<char
     Integrate();
 }
 
-/// The corners at a vertex in order, each disc as large as it may be; empty where they are not one fan.
+/// The corners at a vertex in order, each disc as large as it may be; empty where they are not one
+/// fan.
 std::vector<eval::DiscSector> ExtraordinaryDiscs::FindSectors(Index vertex) const {
     auto const& level = _input.level;
     auto const faces = level.GetVertexFaces(vertex);
     auto const corners = level.GetVertexFaceLocalIndices(vertex);
-    std::map<Index, int> leaving;  // per edge the corner that it leaves from, as the face goes round
+    std::map<Index, int>
+        leaving;  // per edge the corner that it leaves from, as the face goes round
     bool hasSubQuads = false;
     for (int i = 0; i < faces.size(); ++i) {
         leaving[level.GetFaceEdges(faces[i])[corners[i]]] = i;
@@ -64,7 +71,8 @@ std::vector<eval::DiscSector> ExtraordinaryDiscs::FindSectors(Index vertex) cons
     for (int at = 0; sectors.size() < static_cast<size_t>(faces.size());) {
         Index const face = faces[at];
         bool const isSubQuad = _input.surface.GetNumDomains(face) > 1;
-        // A sub-quad's side is half an edge: what is a quarter for quads is half for their neighbours of other sizes.
+        // A sub-quad's side is half an edge: what is a quarter for quads is half for their
+        // neighbours of other sizes.
         double const radius = hasSubQuads && !isSubQuad ? 0.25 : 0.5;
         sectors.push_back({face, isSubQuad ? corners[at] : 0, isSubQuad ? 0 : corners[at], radius});
         auto const edges = level.GetFaceEdges(face);
@@ -78,10 +86,12 @@ std::vector<eval::DiscSector> ExtraordinaryDiscs::FindSectors(Index vertex) cons
 }
 
 /// \return false where a disc has too few texels
-bool ExtraordinaryDiscs::ChooseRadius(std::vector<eval::DiscSector>& sectors, UVRaster& raster) const {
+bool ExtraordinaryDiscs::ChooseRadius(std::vector<eval::DiscSector>& sectors,
+                                      UVRaster& raster) const {
     bool const isLoop = _input.surface.IsLoop();
     double const width = _input.options.width, height = _input.options.height;
-    double count = 0.0, fall = std::numeric_limits<double>::infinity();  // of texels; the latter of the sparsest sector
+    double count = 0.0, fall = std::numeric_limits<double>::infinity();  // of texels; the latter of
+                                                                         // the sparsest sector
     for (eval::DiscSector const& sector : sectors) {
         raster.Bind(sector.face);
         auto const [s, t] = eval::FromCorner(isLoop, sector.corner, 0.25, 0.25);
@@ -104,7 +114,8 @@ void ExtraordinaryDiscs::Integrate() {
         CheckInterrupted();
         _discs[i].integral = eval::IntegrateDisc(trees.local(), _discs[i].sectors);
     });
-    // Without a tangent plane somewhere on the border the theorem says nothing: texels are the better guess.
+    // Without a tangent plane somewhere on the border the theorem says nothing: texels are the
+    // better guess.
     std::erase_if(_discs, [](Disc const& disc) { return !std::isfinite(disc.integral); });
     for (Disc const& disc : _discs) {
         for (eval::DiscSector const& sector : disc.sectors) RadiusAt(sector) = sector.radius;
@@ -123,8 +134,10 @@ double ExtraordinaryDiscs::GetTexelShare(Index face, int domain, double s, doubl
     return share;
 }
 
-void ExtraordinaryDiscs::AddIntegrals(std::vector<int> const& componentOfFace, std::vector<double>& integrals) const {
-    for (Disc const& disc : _discs) integrals[componentOfFace[disc.sectors[0].face]] += disc.integral;
+void ExtraordinaryDiscs::AddIntegrals(std::vector<int> const& componentOfFace,
+                                      std::vector<double>& integrals) const {
+    for (Disc const& disc : _discs)
+        integrals[componentOfFace[disc.sectors[0].face]] += disc.integral;
 }
 
 }  // namespace limn::engine

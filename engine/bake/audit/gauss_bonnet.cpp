@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/audit/gauss_bonnet.h"
 
 #include <algorithm>
@@ -55,23 +56,28 @@ private:
 
     std::vector<double> FindAreas() const;
     std::string FindReason(int component) const;
-    std::vector<std::vector<Index>> BinFaces(TileGrid const& grid, std::vector<UVBounds> const& bounds) const;
+    std::vector<std::vector<Index>> BinFaces(TileGrid const& grid,
+                                             std::vector<UVBounds> const& bounds) const;
     std::vector<Sums> SumTexels(ExtraordinaryDiscs const& discs) const;
-    void SumFace(Worker& worker, ExtraordinaryDiscs const& discs, Index face, TileGrid const& grid, Sums& sums) const;
+    void SumFace(Worker& worker, ExtraordinaryDiscs const& discs, Index face, TileGrid const& grid,
+                 Sums& sums) const;
 
     AuditInput const& _input;
     far_ext::FaceComponents _components;
 };
 
 /// Per band, the faces whose bounds reach a texel centre of it, in ascending order.
-std::vector<std::vector<Index>> GaussBonnetAuditor::BinFaces(TileGrid const& grid, std::vector<UVBounds> const& bounds) const {
-    std::vector<std::vector<Index>> bins(static_cast<size_t>((grid.height + kBandRows - 1) / kBandRows));
+std::vector<std::vector<Index>> GaussBonnetAuditor::BinFaces(
+    TileGrid const& grid, std::vector<UVBounds> const& bounds) const {
+    std::vector<std::vector<Index>> bins(
+        static_cast<size_t>((grid.height + kBandRows - 1) / kBandRows));
     for (Index face = 0; face < static_cast<Index>(bounds.size()); ++face) {
         if (!_input.isBaked[face]) continue;
         UVBounds const& b = bounds[face];
         double const slack = 1.0;  // a face covers 1e-4 texel beyond its border
         double const top = grid.ToY(b.maxV) - slack, bottom = grid.ToY(b.minV) + slack;
-        if (!(grid.ToX(b.maxU) + slack >= 0.0 && grid.ToX(b.minU) - slack <= grid.width - 1.0)) continue;
+        if (!(grid.ToX(b.maxU) + slack >= 0.0 && grid.ToX(b.minU) - slack <= grid.width - 1.0))
+            continue;
         if (!(bottom >= 0.0 && top <= grid.height - 1.0)) continue;
         int const first = static_cast<int>(std::max(top, 0.0)) / kBandRows;
         int const last = static_cast<int>(std::min(bottom, grid.height - 1.0)) / kBandRows;
@@ -81,7 +87,8 @@ std::vector<std::vector<Index>> GaussBonnetAuditor::BinFaces(TileGrid const& gri
 }
 
 /// K dA over texel centres, per component; band sums are added in order, whatever the threads.
-std::vector<GaussBonnetAuditor::Sums> GaussBonnetAuditor::SumTexels(ExtraordinaryDiscs const& discs) const {
+std::vector<GaussBonnetAuditor::Sums> GaussBonnetAuditor::SumTexels(
+    ExtraordinaryDiscs const& discs) const {
     tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers;
     std::vector<Sums> total(static_cast<size_t>(_components.count));
     std::vector<UVBounds> bounds(_input.isBaked.size());
@@ -99,10 +106,12 @@ std::vector<GaussBonnetAuditor::Sums> GaussBonnetAuditor::SumTexels(Extraordinar
             if (!slot) slot = std::make_unique<Worker>(_input);
             int const firstRow = static_cast<int>(index) * kBandRows;
             slot->band.Reset(firstRow, std::min(kBandRows, grid.height - firstRow), grid.width);
-            for (Index face : bins[index]) SumFace(*slot, discs, face, grid, ofBand[index][_components.ofFace[face]]);
+            for (Index face : bins[index])
+                SumFace(*slot, discs, face, grid, ofBand[index][_components.ofFace[face]]);
             TexelBand const& band = slot->band;
             for (size_t texel = 0; texel < band.owner.size(); ++texel) {
-                if (band.overlap[texel]) ++ofBand[index][_components.ofFace[band.owner[texel]]].overlaps;
+                if (band.overlap[texel])
+                    ++ofBand[index][_components.ofFace[band.owner[texel]]].overlaps;
             }
         });
         for (auto const& sums : ofBand) {
@@ -113,20 +122,27 @@ std::vector<GaussBonnetAuditor::Sums> GaussBonnetAuditor::SumTexels(Extraordinar
 }
 
 /// Adds what lies of a face in the worker's band.
-void GaussBonnetAuditor::SumFace(Worker& worker, ExtraordinaryDiscs const& discs, Index face, TileGrid const& grid,
-                                 Sums& sums) const {
+void GaussBonnetAuditor::SumFace(Worker& worker, ExtraordinaryDiscs const& discs, Index face,
+                                 TileGrid const& grid, Sums& sums) const {
     auto const& hits = worker.raster.Rasterise(face, grid, worker.band);
     worker.sampler.Bind(face);
     for (int domain = 0; domain < _input.surface.GetNumDomains(face); ++domain) {
         auto const& [texels, s, t] = hits[domain];
-        auto const add = [&, &s = s, &t = t](std::span<int const> samples, float const* p, size_t stride) {
+        auto const add = [&, &s = s, &t = t](std::span<int const> samples, float const* p,
+                                             size_t stride) {
             for (size_t i = 0; i < samples.size(); ++i) {
                 int const sample = samples[i];
-                auto const at = [&](int c) { return static_cast<double>(p[static_cast<size_t>(c) * stride + i]); };
-                Eigen::Vector3d const ds(at(eval::kTangentSX), at(eval::kTangentSY), at(eval::kTangentSZ));
-                Eigen::Vector3d const dt(at(eval::kTangentTX), at(eval::kTangentTY), at(eval::kTangentTZ));
-                auto const [us, ut, vs, vt] = worker.raster.GetJacobian(domain, s[sample], t[sample]);
-                double const texelsPerDomain = std::abs(us * vt - ut * vs) * grid.width * grid.height;
+                auto const at = [&](int c) {
+                    return static_cast<double>(p[static_cast<size_t>(c) * stride + i]);
+                };
+                Eigen::Vector3d const ds(at(eval::kTangentSX), at(eval::kTangentSY),
+                                         at(eval::kTangentSZ));
+                Eigen::Vector3d const dt(at(eval::kTangentTX), at(eval::kTangentTY),
+                                         at(eval::kTangentTZ));
+                auto const [us, ut, vs, vt] =
+                    worker.raster.GetJacobian(domain, s[sample], t[sample]);
+                double const texelsPerDomain =
+                    std::abs(us * vt - ut * vs) * grid.width * grid.height;
                 if (!(texelsPerDomain > 0.0)) continue;
                 double const area = ds.cross(dt).norm() / texelsPerDomain;
                 double const curvature = at(eval::kGaussian) * area;
@@ -147,10 +163,11 @@ std::vector<double> GaussBonnetAuditor::FindAreas() const {
     for (Index face = 0; face < _input.surface.GetNumFaces(); ++face) {
         if (!_input.surface.HasLimit(face)) continue;
         tree.Bind(face);
-        eval::ForEachGaussPoint(_input.surface, face, [&](eval::FacePlace const& place, double weight) {
-            auto const x = eval::EvaluateSample(tree, place.domain, place.s, place.t, 1.0);
-            areas[_components.ofFace[face]] += weight * x.tangentS.cross(x.tangentT).norm();
-        });
+        eval::ForEachGaussPoint(
+            _input.surface, face, [&](eval::FacePlace const& place, double weight) {
+                auto const x = eval::EvaluateSample(tree, place.domain, place.s, place.t, 1.0);
+                areas[_components.ofFace[face]] += weight * x.tangentS.cross(x.tangentT).norm();
+            });
     }
     return areas;
 }
@@ -158,7 +175,8 @@ std::vector<double> GaussBonnetAuditor::FindAreas() const {
 /// Why a component cannot be audited, by its topology and tags; empty if it can.
 std::string GaussBonnetAuditor::FindReason(int component) const {
     Level const& level = _input.level;
-    if (_input.scene.cage.scheme == Sdc::SCHEME_BILINEAR) return "a bilinear surface has a crease along every edge";
+    if (_input.scene.cage.scheme == Sdc::SCHEME_BILINEAR)
+        return "a bilinear surface has a crease along every edge";
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         if (_components.ofFace[face] != component) continue;
         if (level.IsFaceHole(face)) return "it has a hole";
@@ -195,16 +213,22 @@ std::vector<GaussBonnetAudit> GaussBonnetAuditor::Run() {
         audit.integral = integrals[c];
         audit.texelSum = sums[c].curvature;
         audit.expected = 2.0 * kPi * euler[c];
-        audit.relativeError = std::abs(audit.integral - audit.expected) / std::max(2.0 * kPi, sums[c].magnitude);
-        if (audit.reason.empty() && sums[c].overlaps) audit.reason = "its texture coordinates overlap";
+        audit.relativeError =
+            std::abs(audit.integral - audit.expected) / std::max(2.0 * kPi, sums[c].magnitude);
+        if (audit.reason.empty() && sums[c].overlaps)
+            audit.reason = "its texture coordinates overlap";
         auto const& missed = _input.bake.facesWithoutTexels;
-        auto const numMissed = std::count_if(missed.begin(), missed.end(), [&](Index face) { return _components.ofFace[face] == c; });
+        auto const numMissed = std::count_if(missed.begin(), missed.end(), [&](Index face) {
+            return _components.ofFace[face] == c;
+        });
         if (audit.reason.empty() && numMissed) {
-            audit.reason = fmt::format("{} of its faces have no texel; a larger --size resolves them", numMissed);
+            audit.reason = fmt::format(
+                "{} of its faces have no texel; a larger --size resolves them", numMissed);
         }
         // Texel centres miss or double-count up to half a texel along chart borders.
         if (audit.reason.empty() && std::abs(sums[c].area - areas[c]) > 0.01 * areas[c]) {
-            audit.reason = fmt::format("its texels cover {:.1f} % of its area", 100.0 * sums[c].area / areas[c]);
+            audit.reason = fmt::format("its texels cover {:.1f} % of its area",
+                                       100.0 * sums[c].area / areas[c]);
         }
         audit.wasAudited = audit.reason.empty();
     }
@@ -213,6 +237,8 @@ std::vector<GaussBonnetAudit> GaussBonnetAuditor::Run() {
 
 }  // namespace
 
-std::vector<GaussBonnetAudit> AuditGaussBonnet(AuditInput const& input) { return GaussBonnetAuditor(input).Run(); }
+std::vector<GaussBonnetAudit> AuditGaussBonnet(AuditInput const& input) {
+    return GaussBonnetAuditor(input).Run();
+}
 
 }  // namespace limn::engine

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
@@ -10,17 +11,17 @@ namespace limn::engine {
 /// The integral of Gaussian curvature over one component, against 2 pi chi.
 struct GaussBonnetAudit {
     int component = 0;
-    double integral = 0.0;       ///< texels, and discs apart
-    double texelSum = 0.0;       ///< texels alone, without regard to extraordinary vertices
+    double integral = 0.0;  ///< texels, and discs apart
+    double texelSum = 0.0;  ///< texels alone, without regard to extraordinary vertices
     double expected = 0.0;
     double relativeError = 0.0;  ///< of `integral`; its unit is max(2 pi, integral of |K|)
     bool wasAudited = false;
     std::string reason;  ///< why it was not
 };
 
-/// Sums K dA over texels, with what lies round extraordinary vertices integrated apart (ExtraordinaryDiscs). A
-/// component is audited if it is closed, has no infinitely sharp creases or corners and no holes, and
-/// its texels neither overlap nor miss some of it.
+/// Sums K dA over texels, with what lies round extraordinary vertices integrated apart
+/// (ExtraordinaryDiscs). A component is audited if it is closed, has no infinitely sharp creases or
+/// corners and no holes, and its texels neither overlap nor miss some of it.
 std::vector<GaussBonnetAudit> AuditGaussBonnet(AuditInput const& input);
 
 }  // namespace limn::engine

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/audit/seam_audit.h"
 
 #include <algorithm>
@@ -6,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "engine/images/exr_lookup.h"
 #include "engine/bake/layout.h"
+#include "engine/images/exr_lookup.h"
 #include "eval/surface/face_places.h"
 
 namespace limn::engine {
@@ -16,7 +17,8 @@ namespace {
 
 using Level = Far::TopologyLevel;
 
-SeamAudit AuditSeamsOf(AuditInput const& input, Map const& map, std::vector<std::string> const& channels,
+SeamAudit AuditSeamsOf(AuditInput const& input, Map const& map,
+                       std::vector<std::string> const& channels,
                        std::map<int, std::string> const& pathOfTile) {
     Level const& level = input.level;
     SeamAudit audit;
@@ -31,12 +33,15 @@ SeamAudit AuditSeamsOf(AuditInput const& input, Map const& map, std::vector<std:
         raster.Bind(face);
         for (int k = 0; k < kPlaces; ++k) {
             double const tau = (k + 0.5) / kPlaces;
-            auto const place = eval::GetEdgePlace(input.uvSurface, face, level.GetFaceVertices(face).size(), corner,
-                                                  isReversed ? 1.0 - tau : tau);
+            auto const place =
+                eval::GetEdgePlace(input.uvSurface, face, level.GetFaceVertices(face).size(),
+                                   corner, isReversed ? 1.0 - tau : tau);
             auto const [u, v] = raster.Evaluate(place.domain, place.s, place.t);
             // A seam on a tile's border belongs to the tile its face lies in: look a hair inside.
-            auto const [cu, cv] = raster.Evaluate(place.domain, 0.01 * 0.5 + 0.99 * place.s, 0.01 * 0.5 + 0.99 * place.t);
-            int const tile = 1001 + static_cast<int>(std::floor(cu)) + 10 * static_cast<int>(std::floor(cv));
+            auto const [cu, cv] = raster.Evaluate(place.domain, 0.01 * 0.5 + 0.99 * place.s,
+                                                  0.01 * 0.5 + 0.99 * place.t);
+            int const tile =
+                1001 + static_cast<int>(std::floor(cu)) + 10 * static_cast<int>(std::floor(cv));
             auto const path = pathOfTile.find(tile);
             values.emplace_back();
             if (path == pathOfTile.end() || cu < 0.0 || cu >= 10.0 || cv < 0.0) continue;
@@ -54,24 +59,28 @@ SeamAudit AuditSeamsOf(AuditInput const& input, Map const& map, std::vector<std:
         if (level.IsEdgeInfSharp(edge) && !isContinuous) continue;
         CheckInterrupted();
         auto const locals = level.GetEdgeFaceLocalIndices(edge);
-        auto const a = lookAlong(faces[0], locals[0], false), b = lookAlong(faces[1], locals[1], true);
+        auto const a = lookAlong(faces[0], locals[0], false),
+                   b = lookAlong(faces[1], locals[1], true);
         for (int k = 0; k < kPlaces; ++k) {
             if (a[k].empty() || b[k].empty()) continue;
             double sum = 0.0;
-            for (size_t c = 0; c < channels.size(); ++c) sum += (a[k][c] - b[k][c]) * (a[k][c] - b[k][c]);
+            for (size_t c = 0; c < channels.size(); ++c)
+                sum += (a[k][c] - b[k][c]) * (a[k][c] - b[k][c]);
             double const difference = std::sqrt(sum);
             if (difference >= audit.max) {
                 auto const ends = level.GetEdgeVertices(edge);
                 audit.max = difference;
-                audit.place = fmt::format("edge {} {} between {} and {}", ends[0], ends[1], input.scene.NameFace(faces[0]),
-                                          input.scene.NameFace(faces[1]));
+                audit.place =
+                    fmt::format("edge {} {} between {} and {}", ends[0], ends[1],
+                                input.scene.NameFace(faces[0]), input.scene.NameFace(faces[1]));
             }
             differences.push_back(difference);
         }
     }
     audit.samples = differences.size();
     if (differences.empty()) return audit;
-    auto const at = differences.begin() + static_cast<ptrdiff_t>(0.99 * static_cast<double>(differences.size() - 1));
+    auto const at = differences.begin() +
+                    static_cast<ptrdiff_t>(0.99 * static_cast<double>(differences.size() - 1));
     std::nth_element(differences.begin(), at, differences.end());
     audit.p99 = *at;
     return audit;
@@ -81,10 +90,12 @@ SeamAudit AuditSeamsOf(AuditInput const& input, Map const& map, std::vector<std:
 
 std::vector<SeamAudit> AuditSeams(AuditInput const& input) {
     std::map<std::string, std::map<int, std::string>> paths;  // per map name of the file, per tile
-    for (BakeOutput const& output : input.bake.outputs) paths[output.map][output.tile] = output.path;
+    for (BakeOutput const& output : input.bake.outputs)
+        paths[output.map][output.tile] = output.path;
     std::vector<Map> const maps = MakeMaps(input.options.maps, input.scene);
     std::vector<SeamAudit> audits;
-    for (FileLayout const& file : LayOutFiles(maps, input.options.pattern, input.options.hasCoverage)) {
+    for (FileLayout const& file :
+         LayOutFiles(maps, input.options.pattern, input.options.hasCoverage)) {
         auto const found = paths.find(file.mapName);
         if (found == paths.end()) continue;
         size_t first = 0;
@@ -93,7 +104,8 @@ std::vector<SeamAudit> AuditSeams(AuditInput const& input) {
             std::vector<std::string> const channels(begin, begin + map.GetNumChannels());
             first += channels.size();
             if (map.averaging == Averaging::Line) continue;  // a line has no sign to compare
-            if (map.kind == MapKind::Field && map.GetNumChannels() == 2) continue;  // each side has its own coordinates
+            if (map.kind == MapKind::Field && map.GetNumChannels() == 2)
+                continue;  // each side has its own coordinates
             audits.push_back(AuditSeamsOf(input, map, channels, found->second));
         }
     }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include <string>
@@ -15,7 +16,8 @@ struct SeamAudit {
     std::string place;            ///< of the maximum
 };
 
-/// Looks finished files up bilinearly from both sides of every seam, map by map; lines have no sign to compare.
+/// Looks finished files up bilinearly from both sides of every seam, map by map; lines have no sign
+/// to compare.
 ///
 /// \throws Error Io where a file cannot be read back
 std::vector<SeamAudit> AuditSeams(AuditInput const& input);

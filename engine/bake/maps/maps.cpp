@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/maps/maps.h"
 
 #include <algorithm>
@@ -29,22 +30,33 @@ std::vector<MapRow> const& GetTable() {
     static std::vector<std::string> const y{"Y"}, rgb{"R", "G", "B"};
     static std::vector<MapRow> const table{
         {"mean", MapKind::Mean, y, Averaging::Plain, true, "1/length", Quantity::Curvature},
-        {"gaussian", MapKind::Gaussian, y, Averaging::Plain, true, "1/length^2", Quantity::Curvature},
+        {"gaussian", MapKind::Gaussian, y, Averaging::Plain, true, "1/length^2",
+         Quantity::Curvature},
         {"k1", MapKind::K1, y, Averaging::Plain, true, "1/length", Quantity::Curvature},
         {"k2", MapKind::K2, y, Averaging::Plain, true, "1/length", Quantity::Curvature},
-        {"curvedness", MapKind::Curvedness, y, Averaging::Plain, false, "1/length", Quantity::Curvature},
-        {"shape-index", MapKind::ShapeIndex, y, Averaging::Plain, true, "none", Quantity::Curvature},
-        {"curvature", MapKind::Curvature, {"k1", "k2", "mean", "gaussian"}, Averaging::Plain, true,
-         "1/length, gaussian 1/length^2", Quantity::Curvature},
-        {"principal-direction", MapKind::PrincipalDirection, rgb, Averaging::Line, true, "unit vector",
-         Quantity::Direction},
+        {"curvedness", MapKind::Curvedness, y, Averaging::Plain, false, "1/length",
+         Quantity::Curvature},
+        {"shape-index", MapKind::ShapeIndex, y, Averaging::Plain, true, "none",
+         Quantity::Curvature},
+        {"curvature",
+         MapKind::Curvature,
+         {"k1", "k2", "mean", "gaussian"},
+         Averaging::Plain,
+         true,
+         "1/length, gaussian 1/length^2",
+         Quantity::Curvature},
+        {"principal-direction", MapKind::PrincipalDirection, rgb, Averaging::Line, true,
+         "unit vector", Quantity::Direction},
         {"position", MapKind::Position, rgb, Averaging::Plain, true, "length", Quantity::Position},
-        {"normal", MapKind::Normal, rgb, Averaging::UnitVector, true, "unit vector", Quantity::Normal},
-        {"displacement", MapKind::Displacement, y, Averaging::Plain, true, "length", Quantity::Normal},
+        {"normal", MapKind::Normal, rgb, Averaging::UnitVector, true, "unit vector",
+         Quantity::Normal},
+        {"displacement", MapKind::Displacement, y, Averaging::Plain, true, "length",
+         Quantity::Normal},
         {"stretch", MapKind::Stretch, y, Averaging::Plain, true, "log2", Quantity::Tangents},
         {"bands", MapKind::Bands, {}, Averaging::Plain, true, "length", Quantity::Normal},
         {"noise", MapKind::Noise, y, Averaging::Plain, true, "amplitude", Quantity::Position},
-        {"field", MapKind::Field, rgb, Averaging::Plain, true, "as the form per length", Quantity::Position},
+        {"field", MapKind::Field, rgb, Averaging::Plain, true, "as the form per length",
+         Quantity::Position},
     };
     return table;
 }
@@ -63,22 +75,31 @@ Map MakePrimvarMap(std::string const& name, Scene const& scene) {
             channel += primvar.numChannels;
             continue;
         }
-        Map map{MapKind::Primvar, name, {}, Averaging::Plain, false, "as in the mesh", Quantity::Position, channel};
+        Map map{MapKind::Primvar,   name,   {}, Averaging::Plain, false, "as in the mesh",
+                Quantity::Position, channel};
         static char const* const kNames[] = {"R", "G", "B", "A"};
-        if (primvar.numChannels == 1) map.channels = {"Y"};
-        else for (int c = 0; c < primvar.numChannels; ++c) map.channels.push_back(kNames[c]);
+        if (primvar.numChannels == 1)
+            map.channels = {"Y"};
+        else
+            for (int c = 0; c < primvar.numChannels; ++c) map.channels.push_back(kNames[c]);
         return map;
     }
     std::string known;
-    for (Primvar const& primvar : scene.primvars) known += (known.empty() ? "" : ", ") + primvar.name;
-    throw Error(ErrorCode::BadOption, fmt::format("--maps: '{}' has no primvar '{}'; it has: {}", scene.path,
-                                                  wanted, known.empty() ? "none" : known));
+    for (Primvar const& primvar : scene.primvars)
+        known += (known.empty() ? "" : ", ") + primvar.name;
+    throw Error(ErrorCode::BadOption,
+                fmt::format("--maps: '{}' has no primvar '{}'; it has: {}", scene.path, wanted,
+                            known.empty() ? "none" : known));
 }
 
 /// Vectors in object space, or the flow in texture coordinates.
 void ChooseFieldChannels(MapOptions const& options, Map& map) {
-    if (!options.hasField) throw Error(ErrorCode::BadOption, "--maps field needs --field EDGES.csv, as limn field writes it");
-    if (options.space == MapSpace::Tangent) throw Error(ErrorCode::BadOption, "--maps field: use --space object or uv; its vectors are tangents already");
+    if (!options.hasField)
+        throw Error(ErrorCode::BadOption,
+                    "--maps field needs --field EDGES.csv, as limn field writes it");
+    if (options.space == MapSpace::Tangent)
+        throw Error(ErrorCode::BadOption,
+                    "--maps field: use --space object or uv; its vectors are tangents already");
     if (options.isNormalized) {
         map.averaging = Averaging::UnitVector;
         map.units = "unit vector";
@@ -107,41 +128,51 @@ std::vector<Map> MakeMaps(MapOptions const& options, Scene const& scene) {
         auto const row = std::find_if(GetTable().begin(), GetTable().end(),
                                       [&](MapRow const& r) { return name == r.name; });
         if (row == GetTable().end()) {
-            throw Error(ErrorCode::BadOption,
-                        fmt::format("--maps: there is no map '{}'; there are: {}", name, ListNames()));
+            throw Error(
+                ErrorCode::BadOption,
+                fmt::format("--maps: there is no map '{}'; there are: {}", name, ListNames()));
         }
-        Map map{row->kind, name, row->channels, row->averaging, row->isSigned, row->units, row->quantity, 0};
+        Map map{row->kind,     name,       row->channels, row->averaging,
+                row->isSigned, row->units, row->quantity, 0};
         if (map.kind == MapKind::Displacement) {
             if (!options.hasOtherMesh) {
                 throw Error(ErrorCode::BadOption, "--maps displacement needs --against MESH");
             }
-            bool const hasBands = std::find(options.names.begin(), options.names.end(), "bands") != options.names.end();
-            map.extraChannel = 3 + numPrimvarChannels + (hasBands ? GetNumBandChannels(options) : 0);
+            bool const hasBands = std::find(options.names.begin(), options.names.end(), "bands") !=
+                                  options.names.end();
+            map.extraChannel =
+                3 + numPrimvarChannels + (hasBands ? GetNumBandChannels(options) : 0);
             if (options.isVector) map.channels = {"R", "G", "B"};
         }
         if (map.kind == MapKind::Bands) {
             map.extraChannel = 3 + numPrimvarChannels;
             for (int band = 1; band <= options.numBands; ++band) {
-                std::string const part = band < options.numBands ? fmt::format("band{}", band) : "remainder";
+                std::string const part =
+                    band < options.numBands ? fmt::format("band{}", band) : "remainder";
                 for (char const* axis : {".R", ".G", ".B"}) {
                     if (options.isVector) map.channels.push_back(part + axis);
                 }
                 if (!options.isVector) map.channels.push_back(part);
             }
         }
-        bool const isVector = options.isVector && (map.kind == MapKind::Displacement || map.kind == MapKind::Bands);
+        bool const isVector =
+            options.isVector && (map.kind == MapKind::Displacement || map.kind == MapKind::Bands);
         if (isVector && options.space == MapSpace::Tangent) map.quantity = Quantity::Tangents;
         if (map.kind == MapKind::Noise && (options.ramp || options.isNormalized)) {
             map.isSigned = false;
             map.units = options.ramp ? "colour" : "share of the range";
             if (options.ramp) map.channels = {"R", "G", "B"};
         }
-        if (map.kind == MapKind::Field) ChooseFieldChannels(options, map);
-        else if (options.space == MapSpace::UV) throw Error(ErrorCode::BadOption, fmt::format("--space uv is for the map field alone, not for '{}'", name));
+        if (map.kind == MapKind::Field)
+            ChooseFieldChannels(options, map);
+        else if (options.space == MapSpace::UV)
+            throw Error(ErrorCode::BadOption,
+                        fmt::format("--space uv is for the map field alone, not for '{}'", name));
         map.zero = options.hasEncoding ? static_cast<float>(options.encodeOffset) : 0.0f;
         maps.push_back(std::move(map));
     }
-    if (maps.empty()) throw Error(ErrorCode::BadOption, fmt::format("--maps: choose from {}", ListNames()));
+    if (maps.empty())
+        throw Error(ErrorCode::BadOption, fmt::format("--maps: choose from {}", ListNames()));
     return maps;
 }
 
@@ -154,10 +185,13 @@ eval::Quantity FindQuantity(std::span<Map const> maps) {
 bool NeedsJacobian(Map const& map, MapOptions const& options) {
     bool const isDisplacement = map.kind == MapKind::Displacement || map.kind == MapKind::Bands;
     if (map.kind == MapKind::Field) return options.space == MapSpace::UV;
-    return map.kind == MapKind::Stretch || (isDisplacement && options.isVector && options.space == MapSpace::Tangent);
+    return map.kind == MapKind::Stretch ||
+           (isDisplacement && options.isVector && options.space == MapSpace::Tangent);
 }
 
-int GetNumBandChannels(MapOptions const& options) { return 3 * options.numBands; }
+int GetNumBandChannels(MapOptions const& options) {
+    return 3 * options.numBands;
+}
 
 float PortableAtan2(float y, float x) {
     double const ax = std::abs(static_cast<double>(x)), ay = std::abs(static_cast<double>(y));
@@ -211,8 +245,8 @@ Eigen::Vector3d GetVector(MapSamples const& samples, size_t channel, size_t i) {
 }
 
 /// A displacement as it is asked for: along the normal, or as a vector in object or tangent space.
-void PutDisplacement(MapOptions const& options, MapSamples const& samples, size_t i, Eigen::Vector3d const& displacement,
-                     float* out, size_t outStride) {
+void PutDisplacement(MapOptions const& options, MapSamples const& samples, size_t i,
+                     Eigen::Vector3d const& displacement, float* out, size_t outStride) {
     Eigen::Vector3d const normal = GetVector(samples, eval::kNormalX, i);
     if (!options.isVector) {
         out[i] = static_cast<float>(displacement.dot(normal));
@@ -224,14 +258,16 @@ void PutDisplacement(MapOptions const& options, MapSamples const& samples, size_
         auto const& [us, ut, vs, vt] = samples.jacobians[i];
         double const det = us * vt - ut * vs;
         double const sign = det < 0.0 ? -1.0 : 1.0;
-        Eigen::Vector3d along =
-            sign * (vt * GetVector(samples, eval::kTangentSX, i) - vs * GetVector(samples, eval::kTangentTX, i));
+        Eigen::Vector3d along = sign * (vt * GetVector(samples, eval::kTangentSX, i) -
+                                        vs * GetVector(samples, eval::kTangentTX, i));
         along -= along.dot(normal) * normal;
         double const length = along.norm();
         along = length > 0.0 ? Eigen::Vector3d(along / length) : normal.unitOrthogonal();
-        result = {displacement.dot(along), displacement.dot(normal.cross(along)), displacement.dot(normal)};
+        result = {displacement.dot(along), displacement.dot(normal.cross(along)),
+                  displacement.dot(normal)};
     }
-    for (size_t c = 0; c < 3; ++c) out[c * outStride + i] = static_cast<float>(result[static_cast<int>(c)]);
+    for (size_t c = 0; c < 3; ++c)
+        out[c * outStride + i] = static_cast<float>(result[static_cast<int>(c)]);
 }
 
 /// Where the tree's channel `extraChannel` is among the planes.
@@ -239,18 +275,24 @@ size_t FindPlane(MapSamples const& samples, int extraChannel) {
     return static_cast<size_t>(eval::GetNumChannels(samples.quantity) + extraChannel - 3);
 }
 
-void EvaluateBands(Map const& map, MapOptions const& options, MapSamples const& samples, float* out, size_t outStride) {
-    size_t const first = FindPlane(samples, map.extraChannel), numChannels = options.isVector ? 3 : 1;
-    for (size_t band = 0; band < static_cast<size_t>(options.numBands); ++band, out += numChannels * outStride) {
+void EvaluateBands(Map const& map, MapOptions const& options, MapSamples const& samples, float* out,
+                   size_t outStride) {
+    size_t const first = FindPlane(samples, map.extraChannel),
+                 numChannels = options.isVector ? 3 : 1;
+    for (size_t band = 0; band < static_cast<size_t>(options.numBands);
+         ++band, out += numChannels * outStride) {
         for (size_t i = 0; i < samples.count; ++i) {
-            PutDisplacement(options, samples, i, GetVector(samples, first + 3 * band, i), out, outStride);
+            PutDisplacement(options, samples, i, GetVector(samples, first + 3 * band, i), out,
+                            outStride);
         }
     }
 }
 
 float Stretch(MapSamples const& samples, size_t i) {
     auto const& jacobian = samples.jacobians[i];
-    double const area = GetVector(samples, eval::kTangentSX, i).cross(GetVector(samples, eval::kTangentTX, i)).norm();
+    double const area = GetVector(samples, eval::kTangentSX, i)
+                            .cross(GetVector(samples, eval::kTangentTX, i))
+                            .norm();
     double const texture = std::abs(jacobian[0] * jacobian[3] - jacobian[1] * jacobian[2]);
     double const ratio = area / (texture * samples.meanArea);
     // A point without area or without texture area has no stretch; the bounds keep it a number.
@@ -258,7 +300,8 @@ float Stretch(MapSamples const& samples, size_t i) {
     return ratio < 0x1p60 ? PortableLog2(static_cast<float>(ratio)) : 60.0f;
 }
 
-void EvaluateNoise(MapOptions const& options, MapSamples const& samples, float* out, size_t outStride) {
+void EvaluateNoise(MapOptions const& options, MapSamples const& samples, float* out,
+                   size_t outStride) {
     double const low = samples.noiseLow, range = samples.noiseHigh - low;
     for (size_t i = 0; i < samples.count; ++i) {
         double const value = samples.noise[i];
@@ -274,28 +317,34 @@ void EvaluateNoise(MapOptions const& options, MapSamples const& samples, float* 
 
 /// d(u,v) along a tangent vector a P_s + b P_t.
 Eigen::Vector2d FindFlow(MapSamples const& samples, size_t i) {
-    Eigen::Vector3d const ds = GetVector(samples, eval::kTangentSX, i), dt = GetVector(samples, eval::kTangentTX, i);
+    Eigen::Vector3d const ds = GetVector(samples, eval::kTangentSX, i),
+                          dt = GetVector(samples, eval::kTangentTX, i);
     Eigen::Vector3d const& v = samples.field[i];
-    double const e = ds.squaredNorm(), f = ds.dot(dt), g = dt.squaredNorm(), determinant = e * g - f * f;
+    double const e = ds.squaredNorm(), f = ds.dot(dt), g = dt.squaredNorm(),
+                 determinant = e * g - f * f;
     if (!(determinant > 1e-14 * e * g)) return Eigen::Vector2d::Zero();
-    double const a = (g * ds.dot(v) - f * dt.dot(v)) / determinant, b = (e * dt.dot(v) - f * ds.dot(v)) / determinant;
+    double const a = (g * ds.dot(v) - f * dt.dot(v)) / determinant,
+                 b = (e * dt.dot(v) - f * ds.dot(v)) / determinant;
     auto const& [us, ut, vs, vt] = samples.jacobians[i];
     return {us * a + ut * b, vs * a + vt * b};
 }
 
-void EvaluateField(MapOptions const& options, MapSamples const& samples, float* out, size_t outStride) {
+void EvaluateField(MapOptions const& options, MapSamples const& samples, float* out,
+                   size_t outStride) {
     for (size_t i = 0; i < samples.count; ++i) {
         Eigen::Vector3d vector = samples.field[i];
         if (options.space == MapSpace::UV) vector << FindFlow(samples, i), 0.0;
         double const length = vector.norm();
         if (options.isNormalized && length > 0.0) vector /= length;
-        for (int c = 0; c < (options.space == MapSpace::UV ? 2 : 3); ++c) out[static_cast<size_t>(c) * outStride + i] = static_cast<float>(vector[c]);
+        for (int c = 0; c < (options.space == MapSpace::UV ? 2 : 3); ++c)
+            out[static_cast<size_t>(c) * outStride + i] = static_cast<float>(vector[c]);
     }
 }
 
 }  // namespace
 
-void EvaluateMap(Map const& map, MapOptions const& options, MapSamples const& samples, float* out, size_t outStride) {
+void EvaluateMap(Map const& map, MapOptions const& options, MapSamples const& samples, float* out,
+                 size_t outStride) {
     float const* const planes = samples.planes;
     size_t const stride = samples.stride, count = samples.count;
     auto const copy = [&](int channel, int to) {
@@ -308,10 +357,18 @@ void EvaluateMap(Map const& map, MapOptions const& options, MapSamples const& sa
     float const* const k1 = planes + eval::kK1 * stride;
     float const* const k2 = planes + eval::kK2 * stride;
     switch (map.kind) {
-        case MapKind::Mean: copy(eval::kMean, 0); break;
-        case MapKind::Gaussian: copy(eval::kGaussian, 0); break;
-        case MapKind::K1: copy(eval::kK1, 0); break;
-        case MapKind::K2: copy(eval::kK2, 0); break;
+        case MapKind::Mean:
+            copy(eval::kMean, 0);
+            break;
+        case MapKind::Gaussian:
+            copy(eval::kGaussian, 0);
+            break;
+        case MapKind::K1:
+            copy(eval::kK1, 0);
+            break;
+        case MapKind::K2:
+            copy(eval::kK2, 0);
+            break;
         case MapKind::Curvature:
             copy(eval::kK1, 0);
             copy(eval::kK2, 1);
@@ -319,18 +376,29 @@ void EvaluateMap(Map const& map, MapOptions const& options, MapSamples const& sa
             copy(eval::kGaussian, 3);
             break;
         case MapKind::Curvedness:
-            for (size_t i = 0; i < count; ++i) out[i] = std::sqrt(0.5f * (k1[i] * k1[i] + k2[i] * k2[i]));
+            for (size_t i = 0; i < count; ++i)
+                out[i] = std::sqrt(0.5f * (k1[i] * k1[i] + k2[i] * k2[i]));
             break;
         case MapKind::ShapeIndex:
             for (size_t i = 0; i < count; ++i) out[i] = ShapeIndex(k1[i], k2[i]);
             break;
-        case MapKind::PrincipalDirection: copyVector(eval::kDirectionX); break;
-        case MapKind::Position: copyVector(eval::kPositionX); break;
-        case MapKind::Normal: copyVector(eval::kNormalX); break;
+        case MapKind::PrincipalDirection:
+            copyVector(eval::kDirectionX);
+            break;
+        case MapKind::Position:
+            copyVector(eval::kPositionX);
+            break;
+        case MapKind::Normal:
+            copyVector(eval::kNormalX);
+            break;
         case MapKind::Displacement:
             for (size_t i = 0; i < count; ++i) {
-                Eigen::Vector3d const there = samples.other.empty() ? GetVector(samples, FindPlane(samples, map.extraChannel), i) : samples.other[i];
-                PutDisplacement(options, samples, i, there - GetVector(samples, eval::kPositionX, i), out, outStride);
+                Eigen::Vector3d const there =
+                    samples.other.empty()
+                        ? GetVector(samples, FindPlane(samples, map.extraChannel), i)
+                        : samples.other[i];
+                PutDisplacement(options, samples, i,
+                                there - GetVector(samples, eval::kPositionX, i), out, outStride);
             }
             break;
         case MapKind::Stretch:
@@ -341,9 +409,15 @@ void EvaluateMap(Map const& map, MapOptions const& options, MapSamples const& sa
                 copy(static_cast<int>(FindPlane(samples, map.extraChannel)) + c, c);
             }
             break;
-        case MapKind::Bands: EvaluateBands(map, options, samples, out, outStride); break;
-        case MapKind::Noise: EvaluateNoise(options, samples, out, outStride); break;
-        case MapKind::Field: EvaluateField(options, samples, out, outStride); break;
+        case MapKind::Bands:
+            EvaluateBands(map, options, samples, out, outStride);
+            break;
+        case MapKind::Noise:
+            EvaluateNoise(options, samples, out, outStride);
+            break;
+        case MapKind::Field:
+            EvaluateField(options, samples, out, outStride);
+            break;
     }
     if (options.hasEncoding) {
         auto const scale = static_cast<float>(options.encodeScale);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/bake.h"
 
 #include <cmath>
@@ -6,8 +7,8 @@
 #include <tbb/task_arena.h>
 
 #include "engine/bake/audit/audit.h"
-#include "engine/images/exr_lookup.h"
 #include "engine/fit/bands.h"
+#include "engine/images/exr_lookup.h"
 #include "eval/surface/surface_sample.h"
 #include "far_ext/error.h"
 #include "far_ext/topology/refiner.h"
@@ -30,13 +31,14 @@ BakeOptions MakeOptions(std::string const& pattern, std::vector<std::string> map
     return options;
 }
 
-BakeReport RunBake(engine::Scene const& scene, BakeOptions const& options, engine::Scene const* other = nullptr) {
+BakeReport RunBake(engine::Scene const& scene, BakeOptions const& options,
+                   engine::Scene const* other = nullptr) {
     engine::Job job;
     return engine::Bake(scene, *far_ext::CreateRefiner(scene.cage), other, options, job);
 }
 
-// The torus's UVs are its parameters, so the texel's surface point is known by evaluating face and (s, t)
-// directly: the bake must find the same position, normal and curvature.
+// The torus's UVs are its parameters, so the texel's surface point is known by evaluating face and
+// (s, t) directly: the bake must find the same position, normal and curvature.
 TEST(Bake, TexelsHoldTheLimitSurface) {
     test::TemporaryFolder const folder;
     engine::Scene const torus = test::MakeTorus(12, 8);
@@ -60,7 +62,8 @@ TEST(Bake, TexelsHoldTheLimitSurface) {
             auto const expected = eval::EvaluateSample(tree, 0, u * 12 - i, v * 8 - j, 1.0);
             auto const position = lookup.Look(folder / "position.exr", {"R", "G", "B"}, x, y);
             auto const normal = lookup.Look(folder / "normal.exr", {"R", "G", "B"}, x, y);
-            auto const curvature = lookup.Look(folder / "curvature.exr", {"k1", "k2", "mean", "gaussian"}, x, y);
+            auto const curvature =
+                lookup.Look(folder / "curvature.exr", {"k1", "k2", "mean", "gaussian"}, x, y);
             for (int c = 0; c < 3; ++c) {
                 EXPECT_NEAR(position[static_cast<size_t>(c)], expected.position[c], 1e-6);
                 EXPECT_NEAR(normal[static_cast<size_t>(c)], expected.normal[c], 1e-6);
@@ -78,7 +81,8 @@ TEST(Bake, FilesDoNotDependOnThreads) {
     std::vector<std::string> sums;
     for (int threads : {1, 3}) {
         test::TemporaryFolder const folder;
-        auto options = MakeOptions(folder / "{map}.<UDIM>.exr", {"mean", "normal", "principal-direction", "stretch"}, 200);
+        auto options = MakeOptions(folder / "{map}.<UDIM>.exr",
+                                   {"mean", "normal", "principal-direction", "stretch"}, 200);
         options.isHalf = options.hasMips = options.hasCoverage = true;
         options.samplesPerSide = 2;
         tbb::task_arena arena(threads);
@@ -90,7 +94,8 @@ TEST(Bake, FilesDoNotDependOnThreads) {
     for (size_t i = 0; i < 4; ++i) EXPECT_EQ(sums[i], sums[i + 4]);
 }
 
-// Every three of eight vertices make a face: six faces on each edge, more faces than edges at each vertex.
+// Every three of eight vertices make a face: six faces on each edge, more faces than edges at each
+// vertex.
 TEST(Bake, TakesManyFacesOnAnEdge) {
     std::vector<double> positions, uvs;
     for (int i = 0; i < 8; ++i) {
@@ -113,18 +118,20 @@ TEST(Bake, TakesManyFacesOnAnEdge) {
         EXPECT_GT(report.texelsCovered, 40u);
         engine::ExrLookup lookup;
         for (int x = 0; x < 16; ++x) {
-            for (double value : lookup.Look(folder / "a.exr", {"R", "G", "B"}, x, 8)) EXPECT_LE(std::abs(value), 1.0001);
+            for (double value : lookup.Look(folder / "a.exr", {"R", "G", "B"}, x, 8))
+                EXPECT_LE(std::abs(value), 1.0001);
         }
     }
 }
 
-// The bands' layers add up to what leads from the smooth base's limit surface to the mesh's: the displacement
-// to the base, turned round.
+// The bands' layers add up to what leads from the smooth base's limit surface to the mesh's: the
+// displacement to the base, turned round.
 TEST(Bake, BandsAddUpToTheWayFromTheSmoothBase) {
     test::TemporaryFolder const folder;
     engine::Scene const spot = test::LoadData("../../scenes/spot/spot.obj");
     engine::Scene base = spot;
-    base.positions = engine::SplitIntoBands(spot, eval::LimitOperator::Build(*far_ext::CreateRefiner(spot.cage)), 3)[0];
+    base.positions = engine::SplitIntoBands(
+        spot, eval::LimitOperator::Build(*far_ext::CreateRefiner(spot.cage)), 3)[0];
     for (bool const isVector : {false, true}) {
         auto bands = MakeOptions(folder / "bands.exr", {"bands"}, 64);
         bands.maps.numBands = 3;
@@ -140,19 +147,26 @@ TEST(Bake, BandsAddUpToTheWayFromTheSmoothBase) {
         both.maps.numBands = 3;
         RunBake(spot, both, &base);
         engine::ExrLookup lookup;
-        std::vector<std::string> const axes = isVector ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"};
+        std::vector<std::string> const axes =
+            isVector ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"};
         double most = 0.0;
         for (int y = 0; y < 64; ++y) {
             for (int x = 0; x < 64; ++x) {
                 auto const expected = lookup.Look(folder / "way.exr", axes, x, y);
                 bool const isSample = (x + y) % 8 == 0;
-                if (isSample) { EXPECT_EQ(lookup.Look(folder / "both.displacement.exr", axes, x, y), expected); }
+                if (isSample) {
+                    EXPECT_EQ(lookup.Look(folder / "both.displacement.exr", axes, x, y), expected);
+                }
                 for (size_t c = 0; c < axes.size(); ++c) {
                     std::vector<std::string> layers;
-                    for (char const* part : {"band1", "band2", "remainder"}) layers.push_back(part + (isVector ? "." + axes[c] : ""));
+                    for (char const* part : {"band1", "band2", "remainder"})
+                        layers.push_back(part + (isVector ? "." + axes[c] : ""));
                     auto const values = lookup.Look(folder / "bands.exr", layers, x, y);
-                    if (isSample) { EXPECT_EQ(lookup.Look(folder / "both.bands.exr", layers, x, y), values); }
-                    ASSERT_NEAR(values[0] + values[1] + values[2], -expected[c], 1e-6) << x << " " << y;
+                    if (isSample) {
+                        EXPECT_EQ(lookup.Look(folder / "both.bands.exr", layers, x, y), values);
+                    }
+                    ASSERT_NEAR(values[0] + values[1] + values[2], -expected[c], 1e-6)
+                        << x << " " << y;
                     most = std::max(most, std::abs(values[0]));
                 }
             }
@@ -161,7 +175,8 @@ TEST(Bake, BandsAddUpToTheWayFromTheSmoothBase) {
     }
 }
 
-// Moving the other mesh by d along z makes the displacement d times the normal's z, and the vector d z.
+// Moving the other mesh by d along z makes the displacement d times the normal's z, and the vector
+// d z.
 TEST(Bake, DisplacementIsTheDifferenceToTheOtherLimit) {
     test::TemporaryFolder const folder;
     engine::Scene const torus = test::MakeTorus(12, 8);
@@ -185,12 +200,14 @@ TEST(Bake, DisplacementIsTheDifferenceToTheOtherLimit) {
     }
 }
 
-// A tangent-space vector has the same length, and its last component is the displacement along the normal.
+// A tangent-space vector has the same length, and its last component is the displacement along the
+// normal.
 TEST(Bake, TangentSpaceKeepsLengthAndNormalPart) {
     test::TemporaryFolder const folder;
     engine::Scene const torus = test::MakeTorus(12, 8);
     engine::Scene moved = torus;
-    for (size_t i = 0; i < moved.positions.size(); ++i) moved.positions[i] += i % 3 == 0 ? 0.2 : 0.1;
+    for (size_t i = 0; i < moved.positions.size(); ++i)
+        moved.positions[i] += i % 3 == 0 ? 0.2 : 0.1;
     auto options = MakeOptions(folder / "v.exr", {"displacement"}, 32);
     options.maps.hasOtherMesh = options.maps.isVector = true;
     options.maps.space = engine::MapSpace::Tangent;
@@ -201,7 +218,8 @@ TEST(Bake, TangentSpaceKeepsLengthAndNormalPart) {
     engine::ExrLookup lookup;
     for (int x = 1; x < 32; x += 3) {
         auto const v = lookup.Look(folder / "v.exr", {"R", "G", "B"}, x, 20);
-        EXPECT_NEAR(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]), std::sqrt(0.2 * 0.2 + 2 * 0.1 * 0.1), 1e-5);
+        EXPECT_NEAR(std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]),
+                    std::sqrt(0.2 * 0.2 + 2 * 0.1 * 0.1), 1e-5);
         EXPECT_NEAR(v[2], lookup.Look(folder / "s.exr", {"Y"}, x, 20)[0], 1e-5);
     }
 }
@@ -212,11 +230,13 @@ TEST(Bake, PrimvarsAreSubdividedLikePositions) {
     torus.primvars.push_back({"color", 4, {}});
     torus.primvars.push_back({"height", 1, {}});
     for (size_t v = 0; v < torus.positions.size(); v += 3) {
-        for (size_t c = 0; c < 3; ++c) torus.primvars[0].values.push_back(static_cast<float>(torus.positions[v + c]));
+        for (size_t c = 0; c < 3; ++c)
+            torus.primvars[0].values.push_back(static_cast<float>(torus.positions[v + c]));
         torus.primvars[0].values.push_back(1.0f);
         torus.primvars[1].values.push_back(static_cast<float>(torus.positions[v + 2]));
     }
-    RunBake(torus, MakeOptions(folder / "{map}.exr", {"position", "primvar:color", "primvar:height"}, 32));
+    RunBake(torus,
+            MakeOptions(folder / "{map}.exr", {"position", "primvar:color", "primvar:height"}, 32));
     engine::ExrLookup lookup;
     for (int x = 0; x < 32; x += 3) {
         auto const position = lookup.Look(folder / "position.exr", {"R", "G", "B"}, x, 11);
@@ -227,7 +247,8 @@ TEST(Bake, PrimvarsAreSubdividedLikePositions) {
     }
 }
 
-// log2 of area ratio over its mean: 0 where the layout is even, and the texture-weighted mean of 2^stretch is 1.
+// log2 of area ratio over its mean: 0 where the layout is even, and the texture-weighted mean of
+// 2^stretch is 1.
 TEST(Bake, StretchAveragesToOne) {
     test::TemporaryFolder const folder;
     engine::Scene const torus = test::MakeTorus(12, 8);
@@ -235,7 +256,8 @@ TEST(Bake, StretchAveragesToOne) {
     engine::ExrLookup lookup;
     double sum = 0.0;
     for (int y = 0; y < 64; ++y) {
-        for (int x = 0; x < 64; ++x) sum += std::exp2(lookup.Look(folder / "s.exr", {"Y"}, x, y)[0]);
+        for (int x = 0; x < 64; ++x)
+            sum += std::exp2(lookup.Look(folder / "s.exr", {"Y"}, x, y)[0]);
     }
     EXPECT_NEAR(sum / (64 * 64), 1.0, 5e-3);
 }
@@ -264,15 +286,18 @@ TEST(Bake, SupersamplingIsTheMeanOfAFinerBake) {
     engine::ExrLookup lookup;
     for (int x = 0; x < 32; x += 5) {
         double mean = 0.0;
-        for (int k = 0; k < 4; ++k) mean += 0.25 * lookup.Look(folder / "fine.exr", {"Y"}, 2 * x + k % 2, 2 * 7 + k / 2)[0];
+        for (int k = 0; k < 4; ++k)
+            mean += 0.25 * lookup.Look(folder / "fine.exr", {"Y"}, 2 * x + k % 2, 2 * 7 + k / 2)[0];
         EXPECT_NEAR(lookup.Look(folder / "coarse.exr", {"Y"}, x, 7)[0], mean, 1e-5);
     }
 }
 
 TEST(Bake, TilesAreThoseWithTexels) {
-    if (!test::HasAsset("udim/grid_with_udims.obj")) GTEST_SKIP() << "the larger assets are not here";
+    if (!test::HasAsset("udim/grid_with_udims.obj"))
+        GTEST_SKIP() << "the larger assets are not here";
     test::TemporaryFolder const folder;
-    auto const report = RunBake(test::LoadAsset("udim/grid_with_udims.obj"), MakeOptions(folder / "n.<UDIM>.exr", {"normal"}, 32));
+    auto const report = RunBake(test::LoadAsset("udim/grid_with_udims.obj"),
+                                MakeOptions(folder / "n.<UDIM>.exr", {"normal"}, 32));
     EXPECT_EQ(report.tiles.size(), 9u);
     EXPECT_EQ(report.tiles.front(), 1001);
     EXPECT_EQ(report.tiles.back(), 1056);
@@ -292,12 +317,14 @@ TEST(Bake, AMeshWithoutUVsIsRefused) {
 // Sum of K dA over the texels of a closed torus is 0, of spot (a sphere) 4 pi.
 TEST(Bake, GaussBonnetHoldsOnClosedMeshes) {
     test::TemporaryFolder const folder;
-    for (auto const& [scene, expected] : {std::pair{test::MakeTorus(24, 16), 0.0},
-                                          std::pair{test::LoadData("../../scenes/spot/spot.obj"), 4 * std::acos(-1.0)}}) {
+    for (auto const& [scene, expected] :
+         {std::pair{test::MakeTorus(24, 16), 0.0},
+          std::pair{test::LoadData("../../scenes/spot/spot.obj"), 4 * std::acos(-1.0)}}) {
         auto options = MakeOptions(folder / "{mesh}.{map}.<UDIM>.exr", {"position"}, 512);
         auto const report = RunBake(scene, options);
         engine::Job job;
-        auto const audit = engine::Audit(scene, *far_ext::CreateRefiner(scene.cage), options, report, 1e-3, job);
+        auto const audit =
+            engine::Audit(scene, *far_ext::CreateRefiner(scene.cage), options, report, 1e-3, job);
         ASSERT_EQ(audit.gaussBonnet.size(), 1u);
         EXPECT_TRUE(audit.gaussBonnet[0].wasAudited) << audit.gaussBonnet[0].reason;
         EXPECT_NEAR(audit.gaussBonnet[0].expected, expected, 1e-12);
@@ -313,7 +340,8 @@ TEST(Bake, SeamsOfPositionsCloseWithinATexel) {
     auto const options = MakeOptions(folder / "{map}.exr", {"position"}, 256);
     auto const report = RunBake(torus, options);
     engine::Job job;
-    auto const audit = engine::Audit(torus, *far_ext::CreateRefiner(torus.cage), options, report, 1e-3, job);
+    auto const audit =
+        engine::Audit(torus, *far_ext::CreateRefiner(torus.cage), options, report, 1e-3, job);
     ASSERT_EQ(audit.seams.size(), 1u);
     EXPECT_GT(audit.seams[0].samples, 100u);
     EXPECT_LT(audit.seams[0].max, 2 * std::acos(-1.0) * 1.5 / 256);  // circumference over size

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/uv_raster.h"
 
 #include <cmath>
@@ -21,7 +22,8 @@ engine::Scene MakePlane(int n, double low, double high) {
     std::vector<Index> values;
     for (int j = 0; j <= n; ++j) {
         for (int i = 0; i <= n; ++i) {
-            positions.insert(positions.end(), {static_cast<double>(i), static_cast<double>(j), 0.0});
+            positions.insert(positions.end(),
+                             {static_cast<double>(i), static_cast<double>(j), 0.0});
             uvs.insert(uvs.end(), {low + (high - low) * i / n, low + (high - low) * j / n});
         }
     }
@@ -44,7 +46,8 @@ struct Covering {
 };
 
 /// Rasterises all faces; checks that every hit maps to its texel's centre and is within its domain.
-/// \param numClamped  how many hits may lie at a piece's edge rather than at their texel's centre; -1: one in twenty
+/// \param numClamped  how many hits may lie at a piece's edge rather than at their texel's centre;
+///                    -1: one in twenty
 Covering CoverAndCheck(engine::Scene const& scene, int size, int tile = 1001, int numClamped = -1) {
     auto const refiner = far_ext::CreateRefiner(scene.cage);
     eval::LimitSurface const surface(*refiner, 0);
@@ -72,12 +75,17 @@ Covering CoverAndCheck(engine::Scene const& scene, int size, int tile = 1001, in
             }
         }
     }
-    // Newton's method ends within kInversionEnd; only at the edge of a piece a place may be clamped.
-    EXPECT_GE(result.numExact + (numClamped < 0 ? result.numHits / 20 : static_cast<size_t>(numClamped)), result.numHits);
+    // Newton's method ends within kInversionEnd; only at the edge of a piece a place may be
+    // clamped.
+    EXPECT_GE(
+        result.numExact + (numClamped < 0 ? result.numHits / 20 : static_cast<size_t>(numClamped)),
+        result.numHits);
     return result;
 }
 
-size_t Count(std::vector<uint8_t> const& flags) { return static_cast<size_t>(std::count(flags.begin(), flags.end(), 1)); }
+size_t Count(std::vector<uint8_t> const& flags) {
+    return static_cast<size_t>(std::count(flags.begin(), flags.end(), 1));
+}
 
 // The whole square is covered: size^2 texels, each once.
 TEST(UVRaster, APlaneOverTheTileCoversEveryTexelOnce) {
@@ -99,10 +107,12 @@ TEST(UVRaster, ABorderThroughTexelCentresCounts) {
     EXPECT_EQ(CoverAndCheck(MakePlane(2, 2.5 / 8, 5.5 / 8), 8).numHits, 16u);
 }
 
-// A texel is covered up to 1e-4 of a texel beside the face: a border half as far inside of the centres keeps
-// them (12 of the 16 are at the border), one twice as far loses them.
+// A texel is covered up to 1e-4 of a texel beside the face: a border half as far inside of the
+// centres keeps them (12 of the 16 are at the border), one twice as far loses them.
 TEST(UVRaster, ABorderCountsWithinATenThousandthOfATexel) {
-    auto const plane = [](double inset) { return MakePlane(2, (2.5 + inset) / 8, (5.5 - inset) / 8); };
+    auto const plane = [](double inset) {
+        return MakePlane(2, (2.5 + inset) / 8, (5.5 - inset) / 8);
+    };
     EXPECT_EQ(CoverAndCheck(plane(5e-5), 8, 1001, 12).numHits, 16u);
     EXPECT_EQ(CoverAndCheck(plane(2e-4), 8).numHits, 4u);
 }
@@ -124,8 +134,9 @@ TEST(UVRaster, TheLowestFaceWinsWhereFacesOverlap) {
 
 class UVRasterOnMesh : public testing::TestWithParam<char const*> {};
 
-// Curved charts, seams, extraordinary texture vertices: hits are exact, and supply both sides of every
-// inner edge, so that no texel within a chart stays empty. Coverage by a finer dicing would be the same.
+// Curved charts, seams, extraordinary texture vertices: hits are exact, and supply both sides of
+// every inner edge, so that no texel within a chart stays empty. Coverage by a finer dicing would
+// be the same.
 TEST_P(UVRasterOnMesh, HitsMapToTexelCentres) {
     auto const scene = test::LoadData(std::string("opensubdiv_shapes/") + GetParam());
     ASSERT_TRUE(scene.HasUVs());
@@ -135,33 +146,38 @@ TEST_P(UVRasterOnMesh, HitsMapToTexelCentres) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cages, UVRasterOnMesh,
-                         testing::Values("catmark_fvar_bound0.obj", "catmark_fvar_bound2.obj", "catmark_helmet.obj",
-                                         "catmark_nonquads.obj", "catmark_torus_creases0.obj", "catmark_car.obj"),
+                         testing::Values("catmark_fvar_bound0.obj", "catmark_fvar_bound2.obj",
+                                         "catmark_helmet.obj", "catmark_nonquads.obj",
+                                         "catmark_torus_creases0.obj", "catmark_car.obj"),
                          [](testing::TestParamInfo<char const*> const& mesh) {
                              std::string const name = mesh.param;
                              return name.substr(0, name.find('.'));
                          });
 
 TEST(UVRaster, EveryFaceVaryingRuleIsInverted) {
-    for (auto rule : {Sdc::Options::FVAR_LINEAR_NONE, Sdc::Options::FVAR_LINEAR_CORNERS_ONLY,
-                      Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1, Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2,
-                      Sdc::Options::FVAR_LINEAR_BOUNDARIES, Sdc::Options::FVAR_LINEAR_ALL}) {
+    for (auto rule :
+         {Sdc::Options::FVAR_LINEAR_NONE, Sdc::Options::FVAR_LINEAR_CORNERS_ONLY,
+          Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1, Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2,
+          Sdc::Options::FVAR_LINEAR_BOUNDARIES, Sdc::Options::FVAR_LINEAR_ALL}) {
         engine::Scene scene = test::LoadData("opensubdiv_shapes/catmark_fvar_bound0.obj");
         scene.cage.options.SetFVarLinearInterpolation(rule);
         EXPECT_GT(CoverAndCheck(scene, 48).numHits, 100u) << static_cast<int>(rule);
     }
 }
 
-// Spot's chart interiors have no gaps: a covered texel's four neighbours are covered unless the chart
-// ends there, which shows as an uncovered run at least two texels long in that direction.
+// Spot's chart interiors have no gaps: a covered texel's four neighbours are covered unless the
+// chart ends there, which shows as an uncovered run at least two texels long in that direction.
 TEST(UVRaster, ChartsOfARealAssetHaveNoPinholes) {
     auto const scene = engine::Scene(test::LoadData("../../scenes/spot/spot.obj"));
     auto const covering = CoverAndCheck(scene, 256);
-    auto const isCovered = [&](int x, int y) { return covering.band.owner[static_cast<size_t>(y * 256 + x)] >= 0; };
+    auto const isCovered = [&](int x, int y) {
+        return covering.band.owner[static_cast<size_t>(y * 256 + x)] >= 0;
+    };
     size_t pinholes = 0;
     for (int y = 1; y < 255; ++y) {
         for (int x = 1; x < 255; ++x) {
-            pinholes += !isCovered(x, y) && isCovered(x - 1, y) && isCovered(x + 1, y) && isCovered(x, y - 1) && isCovered(x, y + 1);
+            pinholes += !isCovered(x, y) && isCovered(x - 1, y) && isCovered(x + 1, y) &&
+                        isCovered(x, y - 1) && isCovered(x, y + 1);
         }
     }
     EXPECT_EQ(pinholes, 0u);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/differential/differential.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,8 @@ engine::Scene Refine(engine::Scene const& scene, int levels, DifferentialOptions
 engine::Scene LoadBumpy() {  // an irregular, well-shaped sphere
     auto scene = test::LoadDifferential("icosa", Sdc::SCHEME_LOOP);
     scene = engine::RefineUniformly(scene, 1, false);
-    for (size_t i = 0; i < scene.positions.size(); ++i) scene.positions[i] *= 1.0 + 0.1 * std::sin(static_cast<double>(i / 3));
+    for (size_t i = 0; i < scene.positions.size(); ++i)
+        scene.positions[i] *= 1.0 + 0.1 * std::sin(static_cast<double>(i / 3));
     return scene;
 }
 
@@ -48,7 +50,8 @@ TEST(Differential, IsTheSameFromEverySide) {
 // The topology, and what goes with it, is that of the refinement in space.
 TEST(Differential, AttributesFollow) {
     auto const scene = test::MakeTorus(8, 6);
-    auto const spatial = engine::RefineUniformly(scene, 2, false), differential = Refine(scene, 2, {});
+    auto const spatial = engine::RefineUniformly(scene, 2, false),
+               differential = Refine(scene, 2, {});
     EXPECT_EQ(differential.cage.faceVertices, spatial.cage.faceVertices);
     EXPECT_EQ(differential.uvs, spatial.uvs);
 }
@@ -61,17 +64,20 @@ TEST(Differential, AllLevelsInSpaceChangeNothing) {
     EXPECT_LT(test::LargestDifference(spatial.positions, result.positions), 1e-9);
 }
 
-/// Thin-plate energies of differential over spatial Butterfly: the mean's ratio, and the integral's.
+/// Thin-plate energies of differential over spatial Butterfly: the mean's ratio, and the
+/// integral's.
 std::array<double, 2> CompareEnergies(engine::Scene const& scene) {
     engine::DifferentialReport report;
     Refine(scene, 3, {.rule = SubdivisionRule::Butterfly}, &report);
     auto const spatial = engine::RefineUniformly(scene, 3, false, SubdivisionRule::Butterfly);
     auto const refiner = far_ext::CreateRefiner(spatial.cage);
-    auto const energy = eval::FindThinPlateEnergy(eval::MeasureMeshCurvature(refiner->GetLevel(0), spatial.positions, 1.0));
+    auto const energy = eval::FindThinPlateEnergy(
+        eval::MeasureMeshCurvature(refiner->GetLevel(0), spatial.positions, 1.0));
     return {report.energy.mean / energy.mean, report.energy.integral / energy.integral};
 }
 
-// Differential Butterfly is smoother than spatial Butterfly on irregular meshes (surface spec 2.6 and 4).
+// Differential Butterfly is smoother than spatial Butterfly on irregular meshes (surface spec 2.6
+// and 4).
 TEST(Differential, ButterflyGetsSmoother) {
     auto const [mean, integral] = CompareEnergies(LoadBumpy());
     EXPECT_LE(mean, 0.95);
@@ -96,7 +102,8 @@ TEST(Differential, EditsAct) {
     DifferentialOptions none;
     none.edit.factors = {{3, 1.0}};
     none.edit.rotations = {{3, {0, 0, 2}, 360.0}};
-    EXPECT_LT(test::LargestDifference(plain.positions, Refine(scene, 2, none).positions, true), 1e-7);
+    EXPECT_LT(test::LargestDifference(plain.positions, Refine(scene, 2, none).positions, true),
+              1e-7);
     for (int kind = 0; kind < 3; ++kind) {
         DifferentialOptions options;
         if (kind == 0) options.edit.factors = {{3, 1.5}};
@@ -115,7 +122,8 @@ TEST(Differential, TheFilterIsThePapers) {
     EXPECT_NEAR(engine::PolariseCurvature(0.75), 0.5 + std::pow(0.75 / 8 - 1.0 / 16, 0.25), 1e-15);
 }
 
-// Laplacians that depend on the result: finite, nearer to their coordinates than the start, and said so.
+// Laplacians that depend on the result: finite, nearer to their coordinates than the start, and
+// said so.
 TEST(Differential, AreaLaplaciansAreFitted) {
     for (auto laplacian : {engine::Laplacian::Cotangent, engine::Laplacian::Mesh}) {
         engine::DifferentialReport report;
@@ -142,24 +150,32 @@ TEST(Differential, SizeAndTangentialShareAreWarnedOf) {
     EXPECT_NE(creased.warnings.at(0).find("creases get round"), std::string::npos);
 }
 
-// Interior valence 2, isolated vertices, triangles without area: an answer without NaN, or a named refusal.
+// Interior valence 2, isolated vertices, triangles without area: an answer without NaN, or a named
+// refusal.
 TEST(Differential, HostileMeshesHaveAnAnswer) {
-    for (char const* name : {"catmark_val2_interior.obj", "catmark_nonman_edges.obj", "catmark_nonman_verts.obj"}) {
+    for (char const* name :
+         {"catmark_val2_interior.obj", "catmark_nonman_edges.obj", "catmark_nonman_verts.obj"}) {
         auto const scene = test::LoadData(std::string("opensubdiv_shapes/") + name);
         std::vector<double> positions;
-        std::string const refusal = test::RefusalOf([&] { positions = Refine(scene, 2, {}).positions; });
+        std::string const refusal =
+            test::RefusalOf([&] { positions = Refine(scene, 2, {}).positions; });
         EXPECT_NE(positions.empty(), refusal.empty()) << name;
         for (double x : positions) ASSERT_TRUE(std::isfinite(x)) << name;
     }
     auto flat = test::MakeBipyramid(5);
     for (size_t c = 0; c < 3; ++c) flat.positions[6 + c] = flat.positions[9 + c];
     for (double x : Refine(flat, 2, {}).positions) EXPECT_TRUE(std::isfinite(x));
-    EXPECT_NE(test::RefusalOf([&] { Refine(flat, 2, {.laplacian = engine::Laplacian::Cotangent}); }).find("has no area"),
+    EXPECT_NE(test::RefusalOf([&] {
+                  Refine(flat, 2, {.laplacian = engine::Laplacian::Cotangent});
+              }).find("has no area"),
               std::string::npos);
-    EXPECT_EQ(test::CodeOf([&] { Refine(test::MakeCube(), 1, {.laplacian = engine::Laplacian::Cotangent}); }),
+    EXPECT_EQ(test::CodeOf([&] {
+                  Refine(test::MakeCube(), 1, {.laplacian = engine::Laplacian::Cotangent});
+              }),
               static_cast<int>(ErrorCode::Unsupported));
-    EXPECT_EQ(test::CodeOf([&] { Refine(test::MakeCube(), 1, {.dirMagLevels = 1, .spatialLevels = 1}); }),
-              static_cast<int>(ErrorCode::BadOption));
+    EXPECT_EQ(
+        test::CodeOf([&] { Refine(test::MakeCube(), 1, {.dirMagLevels = 1, .spatialLevels = 1}); }),
+        static_cast<int>(ErrorCode::BadOption));
 }
 
 TEST(EditReader, WhatItCannotUseIsNamed) {
@@ -168,23 +184,32 @@ TEST(EditReader, WhatItCannotUseIsNamed) {
         std::string const path = folder.Write("edit.json", text);
         return test::RefusalOf([&] { engine::ReadCurvatureEdit(path); });
     };
-    EXPECT_EQ(refuse(R"({"curvature": [{"vertex": 3, "factor": 1.5}], "rotate": [{"vertex": 7, "axis": [0,0,1], "degrees": 20}],
+    EXPECT_EQ(
+        refuse(
+            R"({"curvature": [{"vertex": 3, "factor": 1.5}], "rotate": [{"vertex": 7, "axis": [0,0,1], "degrees": 20}],
                          "filter": "polarise"})"),
-              "");
+        "");
     EXPECT_EQ(refuse("{}"), "");
     EXPECT_NE(refuse("{\"curvature\": ").find("no JSON"), std::string::npos);
     EXPECT_NE(refuse(R"({"curve": []})").find("key 'curve' is not known"), std::string::npos);
     EXPECT_NE(refuse(R"({"filter": "smooth"})").find("'polarise' is possible"), std::string::npos);
-    EXPECT_NE(refuse(R"({"curvature": [{"vertex": -1, "factor": 1}]})").find("no 0-based index"), std::string::npos);
-    EXPECT_NE(refuse(R"({"curvature": [{"vertex": 1, "factor": "x"}]})").find("no number 'factor'"), std::string::npos);
-    EXPECT_NE(refuse(R"({"rotate": [{"vertex": 1, "axis": [0,0,0], "degrees": 5}]})").find("no axis"), std::string::npos);
-    EXPECT_NE(refuse(R"({"curvature": [{"vertex": 1, "factor": 1, "size": 2}]})").find("unknown keys"), std::string::npos);
+    EXPECT_NE(refuse(R"({"curvature": [{"vertex": -1, "factor": 1}]})").find("no 0-based index"),
+              std::string::npos);
+    EXPECT_NE(refuse(R"({"curvature": [{"vertex": 1, "factor": "x"}]})").find("no number 'factor'"),
+              std::string::npos);
+    EXPECT_NE(
+        refuse(R"({"rotate": [{"vertex": 1, "axis": [0,0,0], "degrees": 5}]})").find("no axis"),
+        std::string::npos);
+    EXPECT_NE(
+        refuse(R"({"curvature": [{"vertex": 1, "factor": 1, "size": 2}]})").find("unknown keys"),
+        std::string::npos);
     EXPECT_NE(refuse(R"({"curvature": 7})").find("no list"), std::string::npos);
 }
 
 TEST(Polylines, WhatIsReadIsWritten) {
     test::TemporaryFolder const folder;
-    std::string const path = folder.Write("in.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0.1\nl 1 2 3 1\nl 1/1 -1 # open\n");
+    std::string const path =
+        folder.Write("in.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0.1\nl 1 2 3 1\nl 1/1 -1 # open\n");
     auto const curves = engine::ReadPolylines(path);
     ASSERT_EQ(curves.size(), 2u);
     EXPECT_TRUE(curves[0].isClosed);
@@ -198,7 +223,9 @@ TEST(Polylines, WhatIsReadIsWritten) {
         std::string const bad = folder.Write("bad.obj", text);
         return test::RefusalOf([&] { engine::ReadPolylines(bad); });
     };
-    EXPECT_NE(refuse("v 0 0 0\nv 1 0 0\nl 1 3\n").find("bad.obj:3: a polyline's vertex index is '3'"), std::string::npos);
+    EXPECT_NE(
+        refuse("v 0 0 0\nv 1 0 0\nl 1 3\n").find("bad.obj:3: a polyline's vertex index is '3'"),
+        std::string::npos);
     EXPECT_NE(refuse("v 0 0 0\nv 1 0 0\nl 1 2 1\n").find("at least 3"), std::string::npos);
     EXPECT_NE(refuse("v 0 0 0\nv 1 0 0\n").find("no polylines"), std::string::npos);
 }

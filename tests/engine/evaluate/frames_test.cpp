@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/evaluate/frames.h"
 
 #include <cmath>
@@ -7,8 +8,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "engine/io/mesh_writer.h"
 #include "engine/io/mesh_reader.h"
+#include "engine/io/mesh_writer.h"
 #include "far_ext/error.h"
 #include "far_ext/topology/refiner.h"
 #include "support/files.h"
@@ -47,15 +48,19 @@ protected:
         return scene;
     }
 
-    static void WriteFrame(std::string const& path, Scene const& scene) { WriteMesh(path, scene, true, nullptr); }
+    static void WriteFrame(std::string const& path, Scene const& scene) {
+        WriteMesh(path, scene, true, nullptr);
+    }
 
-    FramesReport Evaluate(std::optional<eval::EvaluatorKind> evaluator = {}, std::string const& output = "out.{frame}.csv") {
+    FramesReport Evaluate(std::optional<eval::EvaluatorKind> evaluator = {},
+                          std::string const& output = "out.{frame}.csv") {
         FrameOptions options;
         options.outputPattern = folder / output;
         options.isDouble = true;
         options.evaluator = evaluator;
         Job job;
-        return EvaluateFrames(mesh, *refiner, places, "places.csv", FindFrames(folder / "in/walk.{frame}.obj"), options, job);
+        return EvaluateFrames(mesh, *refiner, places, "places.csv",
+                              FindFrames(folder / "in/walk.{frame}.obj"), options, job);
     }
 
     static std::vector<double> ReadNumbers(std::string const& text) {
@@ -70,7 +75,8 @@ protected:
 
     size_t CountOutputs() const {
         size_t count = 0;
-        for (auto const& entry : fs::directory_iterator(folder / "")) count += entry.path().extension() != ".csv" ? 0 : 1;
+        for (auto const& entry : fs::directory_iterator(folder / ""))
+            count += entry.path().extension() != ".csv" ? 0 : 1;
         return count - 1;  // places.csv
     }
 
@@ -86,12 +92,14 @@ TEST_F(Frames, AgreeWithEvaluatingEachAlone) {
     EXPECT_GT(report.numRows, places.faces.size() / 2);
     for (int frame = 1; frame <= kNumFrames; ++frame) {
         size_t numWithout = 0;
-        auto const expected = ReadNumbers(EvaluatePlaces(ReadMesh(InputPath(frame)), *refiner, places, "", false, true, numWithout));
+        auto const expected = ReadNumbers(EvaluatePlaces(ReadMesh(InputPath(frame)), *refiner,
+                                                         places, "", false, true, numWithout));
         auto const found = ReadNumbers(test::ReadText(folder / fmt::format("out.{}.csv", frame)));
         ASSERT_EQ(found.size(), expected.size());
         for (size_t i = 0; i < found.size(); ++i) {
             if (i % 16 >= 13) continue;  // the principal direction is free where k1 = k2
-            EXPECT_NEAR(found[i], expected[i], 1e-9 * std::max(1.0, std::abs(expected[i]))) << "frame " << frame << ", number " << i;
+            EXPECT_NEAR(found[i], expected[i], 1e-9 * std::max(1.0, std::abs(expected[i])))
+                << "frame " << frame << ", number " << i;
         }
     }
 }
@@ -154,9 +162,11 @@ TEST_F(Frames, AnotherTopologyIsNamedAndNothingIsWritten) {
     EXPECT_EQ(CountOutputs(), 0u);
 
     WriteFrame(InputPath(9), test::MakeCube());
-    EXPECT_NE(ErrorOf(ErrorCode::BadMesh, [&] { Evaluate(); }).find("8 vertices"), std::string::npos);
+    EXPECT_NE(ErrorOf(ErrorCode::BadMesh, [&] { Evaluate(); }).find("8 vertices"),
+              std::string::npos);
     test::WriteText(InputPath(9), "v 0 0 zero\n");
-    EXPECT_NE(ErrorOf(ErrorCode::BadMesh, [&] { Evaluate(); }).find("walk.9.obj"), std::string::npos);
+    EXPECT_NE(ErrorOf(ErrorCode::BadMesh, [&] { Evaluate(); }).find("walk.9.obj"),
+              std::string::npos);
     EXPECT_EQ(CountOutputs(), 0u);
 }
 
@@ -167,7 +177,8 @@ TEST_F(Frames, WrongNamesAreRefused) {
     ErrorOf(ErrorCode::Io, [&] { FindFrames(folder / "in/run.{frame}.obj"); });
     ErrorOf(ErrorCode::Io, [&] { FindFrames(folder / "missing/walk.{frame}.obj"); });
     WriteFrame(folder / "in/walk.3.ply", Bend(3));
-    EXPECT_NE(ErrorOf(ErrorCode::BadOption, [&] { FindFrames(folder / "in"); }).find("walk.3"), std::string::npos);
+    EXPECT_NE(ErrorOf(ErrorCode::BadOption, [&] { FindFrames(folder / "in"); }).find("walk.3"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/fit/fit.h"
 
 #include <cmath>
@@ -16,28 +17,34 @@ namespace {
 using engine::FitOptions;
 using engine::FitToLimit;
 
-/// Largest distance of a mesh's plain limit from the points of `data`, over their diagonal, by deep refinement.
+/// Largest distance of a mesh's plain limit from the points of `data`, over their diagonal, by deep
+/// refinement.
 double FindMiss(engine::Scene const& mesh, std::vector<double> const& data) {
     auto const refiner = far_ext::CreateRefiner(mesh.cage);
     eval::LimitSurface const surface(*refiner);
     auto const limits = eval::EvaluateVertexLimits(surface, mesh.positions, 3);
     double miss = 0.0;
-    for (size_t i = 0; i < data.size(); ++i) miss = std::max(miss, std::abs(limits.values[i] - data[i]));
+    for (size_t i = 0; i < data.size(); ++i)
+        miss = std::max(miss, std::abs(limits.values[i] - data[i]));
     return miss / eval::FindSize(data, 3);
 }
 
 std::vector<engine::Scene> MakeScenes() {
     std::vector<engine::Scene> scenes;
-    for (char const* name : {"catmark_bishop", "catmark_nonquads", "catmark_pyramid_creases0", "catmark_dart_edgeonly", "catmark_cubes_semisharp",
-                             "catmark_torus_creases0", "catmark_edgeonly", "catmark_hole_test1", "catmark_smoothtris0", "catmark_toroidal_tet"}) {
+    for (char const* name :
+         {"catmark_bishop", "catmark_nonquads", "catmark_pyramid_creases0", "catmark_dart_edgeonly",
+          "catmark_cubes_semisharp", "catmark_torus_creases0", "catmark_edgeonly",
+          "catmark_hole_test1", "catmark_smoothtris0", "catmark_toroidal_tet"}) {
         scenes.push_back(test::LoadData(std::string("opensubdiv_shapes/") + name + ".obj"));
     }
-    for (char const* name : {"loop_cubes_semisharp", "loop_saddle_edgecorner", "loop_pole8", "loop_chaikin0"}) {
+    for (char const* name :
+         {"loop_cubes_semisharp", "loop_saddle_edgecorner", "loop_pole8", "loop_chaikin0"}) {
         scenes.push_back(test::LoadData(std::string("opensubdiv_shapes/") + name + ".obj"));
         scenes.back().cage.scheme = Sdc::SCHEME_LOOP;
     }
     scenes.push_back(test::MakeGridWithHole(7, 6));
-    scenes.push_back(test::Join({test::MakeTorus(9, 7), test::MakeQuadSphere(1), test::MakePrism(5)}));
+    scenes.push_back(
+        test::Join({test::MakeTorus(9, 7), test::MakeQuadSphere(1), test::MakePrism(5)}));
     return scenes;
 }
 
@@ -62,15 +69,18 @@ TEST(Fit, FindsTheControlMeshThatMadeTheData) {
     data.positions = eval::EvaluateVertexLimits(surface, control.positions, 3).values;
     auto const fit = FitToLimit(data, {.tolerance = 1e-12});
     double const size = eval::FindSize(control.positions, 3);
-    for (size_t i = 0; i < control.positions.size(); ++i) EXPECT_NEAR(fit.mesh.positions[i], control.positions[i], 1e-9 * size);
+    for (size_t i = 0; i < control.positions.size(); ++i)
+        EXPECT_NEAR(fit.mesh.positions[i], control.positions[i], 1e-9 * size);
 }
 
-// With alpha the result is one level finer, and its plain limit passes through the data; so do primvars.
+// With alpha the result is one level finer, and its plain limit passes through the data; so do
+// primvars.
 TEST(Fit, AlphaGivesAFinerMeshWhoseLimitPassesThroughTheVertices) {
     engine::Scene scene = test::MakeCube();
     scene.positions[0] += 0.1;
     scene.positions[1] += 0.2;
-    for (engine::Scene const& data : {scene, test::MakePrism(6), test::MakeGridWithHole(5, 5), test::LoadData("opensubdiv_shapes/catmark_nonquads.obj")}) {
+    for (engine::Scene const& data : {scene, test::MakePrism(6), test::MakeGridWithHole(5, 5),
+                                      test::LoadData("opensubdiv_shapes/catmark_nonquads.obj")}) {
         for (double alpha : {0.5, 1.0}) {
             auto const result = FitToLimit(data, {.tolerance = 1e-10, .alpha = alpha});
             EXPECT_TRUE(result.HasConverged());
@@ -90,7 +100,8 @@ TEST(Fit, PrimvarsAreFittedToo) {
     engine::Primvar colour{"color", 3, {}}, height{"height", 1, {}};
     for (Index i = 0; i < scene.cage.numVertices; ++i) {
         height.values.push_back(std::sin(0.3f * static_cast<float>(i)));
-        for (int c = 0; c < 3; ++c) colour.values.push_back(0.5f + 0.5f * std::cos(static_cast<float>(i + 2 * c)));
+        for (int c = 0; c < 3; ++c)
+            colour.values.push_back(0.5f + 0.5f * std::cos(static_cast<float>(i + 2 * c)));
     }
     scene.primvars = {colour, height};
     for (double alpha : {0.0, 0.5}) {
@@ -103,7 +114,8 @@ TEST(Fit, PrimvarsAreFittedToo) {
             auto const& fitted = result.mesh.primvars[p];
             std::vector<double> const values(fitted.values.begin(), fitted.values.end());
             auto const limits = eval::EvaluateVertexLimits(surface, values, fitted.numChannels);
-            for (size_t i = 0; i < scene.primvars[p].values.size(); ++i) ASSERT_NEAR(limits.values[i], scene.primvars[p].values[i], 1e-5);
+            for (size_t i = 0; i < scene.primvars[p].values.size(); ++i)
+                ASSERT_NEAR(limits.values[i], scene.primvars[p].values[i], 1e-5);
         }
     }
 }
@@ -122,9 +134,12 @@ TEST(Fit, AssetsAreFittedWithACertificate) {
         char const* path;
         Sdc::SchemeType scheme;
     };
-    for (Asset const& asset : {Asset{"control/spot_control_mesh.obj", Sdc::SCHEME_CATMARK}, {"control/penguin_control_mesh.obj", Sdc::SCHEME_CATMARK},
-                               {"control/ict_head_skin.obj", Sdc::SCHEME_CATMARK}, {"control/fancy_teapot.obj", Sdc::SCHEME_CATMARK},
-                               {"tri/mechpart_loop_control.obj", Sdc::SCHEME_LOOP}, {"tri/kitten.obj", Sdc::SCHEME_LOOP}}) {
+    for (Asset const& asset : {Asset{"control/spot_control_mesh.obj", Sdc::SCHEME_CATMARK},
+                               {"control/penguin_control_mesh.obj", Sdc::SCHEME_CATMARK},
+                               {"control/ict_head_skin.obj", Sdc::SCHEME_CATMARK},
+                               {"control/fancy_teapot.obj", Sdc::SCHEME_CATMARK},
+                               {"tri/mechpart_loop_control.obj", Sdc::SCHEME_LOOP},
+                               {"tri/kitten.obj", Sdc::SCHEME_LOOP}}) {
         if (!test::HasAsset(asset.path)) continue;
         SCOPED_TRACE(asset.path);
         engine::Scene scene = test::LoadAsset(asset.path);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/images/line_convolution.h"
 
 #include <cmath>
@@ -15,7 +16,8 @@ double Correlate(std::vector<uint8_t> const& grey, int size, int dx, int dy) {
     int count = 0;
     for (int y = 0; y + dy < size; ++y) {
         for (int x = 0; x + dx < size; ++x, ++count) {
-            sum += (grey[static_cast<size_t>(y * size + x)] - mean) * (grey[static_cast<size_t>((y + dy) * size + x + dx)] - mean);
+            sum += (grey[static_cast<size_t>(y * size + x)] - mean) *
+                   (grey[static_cast<size_t>((y + dy) * size + x + dx)] - mean);
         }
     }
     return sum / count;
@@ -26,9 +28,12 @@ TEST(LineConvolution, BlursAlongTheFlowOnly) {
     constexpr int kSize = 256;
     for (bool isAcross : {false, true}) {
         std::vector<float> flow;
-        for (int i = 0; i < kSize * kSize; ++i) flow.insert(flow.end(), {isAcross ? 0.0f : 3.0f, isAcross ? -0.01f : 0.0f});
-        auto const grey = engine::ConvolveLines(kSize, kSize, flow, std::vector<uint8_t>(kSize * kSize, 1));
-        double const along = Correlate(grey, kSize, isAcross ? 0 : 1, isAcross ? 1 : 0), across = Correlate(grey, kSize, isAcross ? 1 : 0, isAcross ? 0 : 1);
+        for (int i = 0; i < kSize * kSize; ++i)
+            flow.insert(flow.end(), {isAcross ? 0.0f : 3.0f, isAcross ? -0.01f : 0.0f});
+        auto const grey =
+            engine::ConvolveLines(kSize, kSize, flow, std::vector<uint8_t>(kSize * kSize, 1));
+        double const along = Correlate(grey, kSize, isAcross ? 0 : 1, isAcross ? 1 : 0),
+                     across = Correlate(grey, kSize, isAcross ? 1 : 0, isAcross ? 0 : 1);
         EXPECT_GT(along, 0.8 * Correlate(grey, kSize, 0, 0));
         EXPECT_LT(std::abs(across), 0.2 * along);
     }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -12,10 +13,10 @@
 #include <gtest/gtest.h>
 
 #include "engine/bake/dilate.h"
-#include "engine/images/exr_lookup.h"
-#include "engine/images/exr_writer.h"
 #include "engine/bake/maps/maps.h"
 #include "engine/bake/mip_chain.h"
+#include "engine/images/exr_lookup.h"
+#include "engine/images/exr_writer.h"
 #include "engine/images/pixel_kernel.h"
 #include "eval/kernels/instruction_set.h"
 
@@ -28,7 +29,8 @@ using namespace engine;  // what is tested here is all of one namespace
 std::vector<eval::InstructionSet> SupportedSets() {
     std::vector<eval::InstructionSet> sets;
     auto const before = eval::GetInstructionSet();
-    for (auto set : {eval::InstructionSet::Sse2, eval::InstructionSet::Avx2, eval::InstructionSet::Avx512}) {
+    for (auto set :
+         {eval::InstructionSet::Sse2, eval::InstructionSet::Avx2, eval::InstructionSet::Avx512}) {
         if (eval::SelectInstructionSet(set)) sets.push_back(set);
     }
     eval::SelectInstructionSet(before);
@@ -47,8 +49,11 @@ TEST(ConvertToHalf, RoundsLikeImath) {
     std::vector<uint16_t> halves(values.size());
     for (auto set : SupportedSets()) {
         ASSERT_TRUE(eval::SelectInstructionSet(set));
-        EXPECT_EQ(ConvertToHalf(values.data(), values.size(), halves.data(), values.size(), values.size(), 1), 0u);
-        for (size_t i = 0; i < values.size(); ++i) ASSERT_EQ(halves[i], Imath::half(values[i]).bits()) << values[i];
+        EXPECT_EQ(ConvertToHalf(values.data(), values.size(), halves.data(), values.size(),
+                                values.size(), 1),
+                  0u);
+        for (size_t i = 0; i < values.size(); ++i)
+            ASSERT_EQ(halves[i], Imath::half(values[i]).bits()) << values[i];
     }
 }
 
@@ -67,7 +72,9 @@ protected:
     static int GetRadius() { return std::get<0>(GetParam()); }
     static int GetLeft() { return std::get<1>(GetParam()); }
 };
-INSTANTIATE_TEST_SUITE_P(Radii, PaddingRadius, testing::Combine(testing::Values(1, 5, 16, 64, 70), testing::Values(0, 64, 128)));
+INSTANTIATE_TEST_SUITE_P(Radii, PaddingRadius,
+                         testing::Combine(testing::Values(1, 5, 16, 64, 70),
+                                          testing::Values(0, 64, 128)));
 
 // Brute force: nearest covered texel, ties to smaller y, then smaller x.
 TEST_P(PaddingRadius, FindsTheNearestCoveredTexel) {
@@ -93,7 +100,8 @@ TEST_P(PaddingRadius, FindsTheNearestCoveredTexel) {
                     }
                 }
             }
-            int32_t const offset = search.GetOffsets()[static_cast<size_t>((y - first) * columns + x - left)];
+            int32_t const offset =
+                search.GetOffsets()[static_cast<size_t>((y - first) * columns + x - left)];
             if (best > radius * radius) {
                 ASSERT_EQ(offset, PaddingSearch::kNoSource) << x << " " << y;
             } else {
@@ -107,7 +115,8 @@ TEST_P(PaddingRadius, FindsTheNearestCoveredTexel) {
 TexelRow MakeRow(int width, int channels, std::mt19937& random, bool isCovered) {
     std::uniform_real_distribution<float> value(-1.0f, 1.0f);
     TexelRow row;
-    for (int i = 0; i < width * channels; ++i) row.values.push_back(isCovered ? value(random) : 0.0f);
+    for (int i = 0; i < width * channels; ++i)
+        row.values.push_back(isCovered ? value(random) : 0.0f);
     row.coverage.assign(static_cast<size_t>(width), isCovered ? 1.0f : 0.0f);
     row.isFilled.assign(static_cast<size_t>(width), isCovered);
     return row;
@@ -119,16 +128,17 @@ void AddRow(MipChain& chain, TexelRow const& row) {
     chain.Add({&view, 1});
 }
 
-// The mean over a fully covered image is the value of the 1 x 1 level, also for odd sizes, since boxes
-// weigh by area.
+// The mean over a fully covered image is the value of the 1 x 1 level, also for odd sizes, since
+// boxes weigh by area.
 TEST(MipChain, TheLastLevelIsTheMean) {
     for (auto const& [width, height] : {std::pair{16, 16}, {13, 7}, {1, 9}, {33, 64}}) {
         std::mt19937 random(3);
         int levels = 1;
         for (int size = std::max(width, height); size > 1; size /= 2) ++levels;
         double last = 0.0, sum = 0.0;
-        MipChain chain(width, height, levels, 1, {{0, 1, Averaging::Plain}},
-                       [&](int, int, TexelRowView const& row) { last = static_cast<double>(row.values[0]); });
+        MipChain chain(
+            width, height, levels, 1, {{0, 1, Averaging::Plain}},
+            [&](int, int, TexelRowView const& row) { last = static_cast<double>(row.values[0]); });
         for (int y = 0; y < height; ++y) {
             TexelRow const row = MakeRow(width, 1, random, true);
             for (float v : row.values) sum += static_cast<double>(v);
@@ -152,8 +162,9 @@ TEST(MipChain, UncoveredTexelsDoNotDarkenCoveredOnes) {
 
 TEST(MipChain, NormalsStayUnitAndLinesIgnoreSign) {
     std::vector<float> seen;
-    MipChain chain(2, 1, 2, 6, {{0, 3, Averaging::UnitVector}, {3, 3, Averaging::Line}},
-                   [&](int, int, TexelRowView const& row) { seen.assign(row.values, row.values + 6); });
+    MipChain chain(
+        2, 1, 2, 6, {{0, 3, Averaging::UnitVector}, {3, 3, Averaging::Line}},
+        [&](int, int, TexelRowView const& row) { seen.assign(row.values, row.values + 6); });
     // Normals x and y: their mean is at 45 degrees. Lines +z and -z: the same line.
     AddRow(chain, {{1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1, -1}, {1.0f, 1.0f}, {1, 1}});
     EXPECT_NEAR(seen[0], std::sqrt(0.5f), 1e-6);
@@ -168,7 +179,8 @@ TEST(PortableFunctions, AgreeWithTheLibrary) {
         float const y = value(random), x = value(random);
         ASSERT_NEAR(PortableAtan2(y, x), std::atan2(y, x), 4e-7);
         float const positive = std::exp2(10.0f * y);
-        ASSERT_NEAR(PortableLog2(positive), std::log2(positive), 2e-6 * (1.0 + std::abs(10.0 * static_cast<double>(y))));
+        ASSERT_NEAR(PortableLog2(positive), std::log2(positive),
+                    2e-6 * (1.0 + std::abs(10.0 * static_cast<double>(y))));
     }
     EXPECT_EQ(PortableAtan2(0.0f, 0.0f), 0.0f);
 }
@@ -179,12 +191,16 @@ struct WriterCase {
 };
 class ExrWriterAs : public testing::TestWithParam<WriterCase> {};
 INSTANTIATE_TEST_SUITE_P(Kinds, ExrWriterAs,
-                         testing::Values(WriterCase{ExrCompression::Zip, true, false}, WriterCase{ExrCompression::Zip, false, true},
-                                         WriterCase{ExrCompression::Zips, false, false}, WriterCase{ExrCompression::None, true, true},
-                                         WriterCase{ExrCompression::Rle, true, false}, WriterCase{ExrCompression::Piz, false, true},
+                         testing::Values(WriterCase{ExrCompression::Zip, true, false},
+                                         WriterCase{ExrCompression::Zip, false, true},
+                                         WriterCase{ExrCompression::Zips, false, false},
+                                         WriterCase{ExrCompression::None, true, true},
+                                         WriterCase{ExrCompression::Rle, true, false},
+                                         WriterCase{ExrCompression::Piz, false, true},
                                          WriterCase{ExrCompression::Dwaa, true, false}));
 
-// What is packed is what OpenEXR's own reader finds, on every level, at sizes that are no multiple of a tile.
+// What is packed is what OpenEXR's own reader finds, on every level, at sizes that are no multiple
+// of a tile.
 TEST_P(ExrWriterAs, ReadsBackThroughOpenExr) {
     ExrSpec spec;
     spec.width = 150;
@@ -194,8 +210,11 @@ TEST_P(ExrWriterAs, ReadsBackThroughOpenExr) {
     spec.compression = GetParam().compression;
     spec.channels = {"R", "G", "B"};  // the file has them as B, G, R
     spec.attributes = {{"limn:map", "test"}};
-    fs::path const path = fs::temp_directory_path() / ("limn_pixels_" + std::to_string(::getpid()) + ".exr");
-    auto const value = [](int level, int c, int x, int y) { return 0.25f * static_cast<float>(level + c) + 0.001f * static_cast<float>(x - 2 * y); };
+    fs::path const path =
+        fs::temp_directory_path() / ("limn_pixels_" + std::to_string(::getpid()) + ".exr");
+    auto const value = [](int level, int c, int x, int y) {
+        return 0.25f * static_cast<float>(level + c) + 0.001f * static_cast<float>(x - 2 * y);
+    };
     {
         ExrWriter writer(path.string(), spec);
         EXPECT_FALSE(fs::exists(path));  // not before it is complete
@@ -204,13 +223,15 @@ TEST_P(ExrWriterAs, ReadsBackThroughOpenExr) {
             std::vector<std::vector<float>> planes(3);
             for (int c = 0; c < 3; ++c) {
                 for (int y = 0; y < h; ++y) {
-                    for (int x = 0; x < w; ++x) planes[static_cast<size_t>(c)].push_back(value(level, c, x, y));
+                    for (int x = 0; x < w; ++x)
+                        planes[static_cast<size_t>(c)].push_back(value(level, c, x, y));
                 }
             }
             for (int ty = 0; ty * 64 < h; ++ty) {
                 for (int tx = 0; tx * 64 < w; ++tx) {
                     float const* tile[3];
-                    for (size_t c = 0; c < 3; ++c) tile[c] = &planes[c][static_cast<size_t>(ty * 64 * w + tx * 64)];
+                    for (size_t c = 0; c < 3; ++c)
+                        tile[c] = &planes[c][static_cast<size_t>(ty * 64 * w + tx * 64)];
                     writer.Write(writer.Pack(level, tx, ty, tile, static_cast<size_t>(w)));
                 }
             }
@@ -220,21 +241,26 @@ TEST_P(ExrWriterAs, ReadsBackThroughOpenExr) {
     Imf::TiledInputFile input(path.c_str());
     EXPECT_EQ(input.numLevels(), spec.GetNumLevels());
     EXPECT_EQ(input.header().lineOrder(), Imf::RANDOM_Y);
-    double const tolerance = GetParam().compression == ExrCompression::Dwaa ? 0.02 : spec.isHalf ? 1e-3 : 0.0;
+    double const tolerance = GetParam().compression == ExrCompression::Dwaa ? 0.02
+                             : spec.isHalf                                  ? 1e-3
+                                                                            : 0.0;
     for (int level = 0; level < spec.GetNumLevels(); ++level) {
         int const w = input.levelWidth(level), h = input.levelHeight(level);
         std::vector<float> pixels(static_cast<size_t>(3 * w * h));
         Imf::FrameBuffer buffer;
         char const* const names[3] = {"R", "G", "B"};
         for (size_t c = 0; c < 3; ++c) {
-            buffer.insert(names[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels.data() + c), 12, 12 * static_cast<size_t>(w)));
+            buffer.insert(names[c],
+                          Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels.data() + c), 12,
+                                     12 * static_cast<size_t>(w)));
         }
         input.setFrameBuffer(buffer);
         input.readTiles(0, input.numXTiles(level) - 1, 0, input.numYTiles(level) - 1, level);
         for (int y = 0; y < h; ++y) {
             for (int x = 0; x < w; ++x) {
                 for (int c = 0; c < 3; ++c) {
-                    ASSERT_NEAR(pixels[static_cast<size_t>(3 * (y * w + x) + c)], value(level, c, x, y), tolerance);
+                    ASSERT_NEAR(pixels[static_cast<size_t>(3 * (y * w + x) + c)],
+                                value(level, c, x, y), tolerance);
                 }
             }
         }
@@ -246,12 +272,15 @@ TEST_P(ExrWriterAs, ReadsBackThroughOpenExr) {
 }
 
 TEST(ExrWriter, LeavesNothingWhenItIsAbandoned) {
-    fs::path const folder = fs::temp_directory_path() / ("limn_abandoned_" + std::to_string(::getpid()));
+    fs::path const folder =
+        fs::temp_directory_path() / ("limn_abandoned_" + std::to_string(::getpid()));
     fs::create_directory(folder);
     ExrSpec spec;
     spec.width = spec.height = 64;
     spec.channels = {"Y"};
-    { ExrWriter const writer((folder / "a.exr").string(), spec); }
+    {
+        ExrWriter const writer((folder / "a.exr").string(), spec);
+    }
     EXPECT_TRUE(fs::is_empty(folder));
     fs::remove_all(folder);
 }

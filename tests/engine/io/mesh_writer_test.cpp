@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/io/mesh_writer.h"
 
 #include <bit>
@@ -19,7 +20,8 @@ namespace {
 using engine::Scene;
 
 /// Writes a scene and reads it back.
-Scene RoundTrip(Scene const& scene, std::string const& name, bool isDouble, std::vector<std::string>* warnings = nullptr) {
+Scene RoundTrip(Scene const& scene, std::string const& name, bool isDouble,
+                std::vector<std::string>* warnings = nullptr) {
     test::TemporaryFolder const folder;
     engine::WriteMesh(folder / name, scene, isDouble, warnings);
     EXPECT_EQ(folder.List(), (std::vector<std::string>{name}));
@@ -30,7 +32,8 @@ Scene RoundTrip(Scene const& scene, std::string const& name, bool isDouble, std:
 void ExpectSameBits(std::vector<double> const& a, std::vector<double> const& b) {
     ASSERT_EQ(a.size(), b.size());
     for (size_t i = 0; i < a.size(); ++i) {
-        ASSERT_EQ(std::bit_cast<uint64_t>(a[i]), std::bit_cast<uint64_t>(b[i])) << "value " << i << ": " << a[i] << " " << b[i];
+        ASSERT_EQ(std::bit_cast<uint64_t>(a[i]), std::bit_cast<uint64_t>(b[i]))
+            << "value " << i << ": " << a[i] << " " << b[i];
     }
 }
 
@@ -45,24 +48,29 @@ void ExpectSameCornerUVs(Scene const& a, Scene const& b) {
     auto const& q = b.cage.fvarChannels.at(0).valueIndices;
     ASSERT_EQ(p.size(), q.size());
     for (size_t corner = 0; corner < p.size(); ++corner) {
-        for (int c = 0; c < 2; ++c) ASSERT_EQ(a.uvs[2 * p[corner] + c], b.uvs[2 * q[corner] + c]) << corner;
+        for (int c = 0; c < 2; ++c)
+            ASSERT_EQ(a.uvs[2 * p[corner] + c], b.uvs[2 * q[corner] + c]) << corner;
     }
 }
 
-/// Numbers no short decimal hits: random mantissas over many magnitudes, and the edges of the range.
+/// Numbers no short decimal hits: random mantissas over many magnitudes, and the edges of the
+/// range.
 Scene MakeAwkward(bool isDouble) {
     Scene scene = test::MakeTorus(8, 6);
     std::mt19937_64 random(7);
     auto const number = [&] {
-        double const x = std::ldexp(static_cast<double>(random() >> 11), static_cast<int>(random() % 60) - 83);
+        double const x =
+            std::ldexp(static_cast<double>(random() >> 11), static_cast<int>(random() % 60) - 83);
         return random() % 2 ? x : -x;
     };
     for (double& value : scene.positions) value = number();
     for (double& value : scene.uvs) value = std::abs(number());
     using Float = std::numeric_limits<float>;
     using Double = std::numeric_limits<double>;
-    std::vector<double> const edges = isDouble ? std::vector<double>{1e30, Double::min(), -0.0, 1.0 / 3, 5e-324, 0.1}
-                                               : std::vector<double>{9.99e29f, Float::min(), -0.0, 1.0f / 3, Float::denorm_min(), 0.1f};
+    std::vector<double> const edges =
+        isDouble ? std::vector<double>{1e30, Double::min(), -0.0, 1.0 / 3, 5e-324, 0.1}
+                 : std::vector<double>{9.99e29f, Float::min(),        -0.0,
+                                       1.0f / 3, Float::denorm_min(), 0.1f};
     std::copy(edges.begin(), edges.end(), scene.positions.begin());
     if (!isDouble) {
         scene.positions = AsFloats(scene.positions);
@@ -103,9 +111,11 @@ TEST_P(WrittenMesh, IsTheSameInEveryLocale) {
     EXPECT_EQ(test::ReadText(folder / "a" + ending), test::ReadText(folder / "b" + ending));
 }
 
-INSTANTIATE_TEST_SUITE_P(Format, WrittenMesh, testing::Combine(testing::Values(".obj", ".ply"), testing::Bool()),
+INSTANTIATE_TEST_SUITE_P(Format, WrittenMesh,
+                         testing::Combine(testing::Values(".obj", ".ply"), testing::Bool()),
                          [](auto const& instance) {
-                             return std::get<0>(instance.param).substr(1) + (std::get<1>(instance.param) ? "Double" : "Float");
+                             return std::get<0>(instance.param).substr(1) +
+                                    (std::get<1>(instance.param) ? "Double" : "Float");
                          });
 
 TEST(MeshWriter, FloatOutputRoundsToTheNearestFloat) {
@@ -145,13 +155,18 @@ TEST(MeshWriter, ObjKeepsTags) {
 TEST(MeshWriter, ObjKeepsEverySubdivisionRule) {
     Scene scene = test::MakeTorus(4, 4);
     auto& options = scene.cage.options;
-    for (auto boundary : {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
-        for (int fvar = Sdc::Options::FVAR_LINEAR_NONE; fvar <= Sdc::Options::FVAR_LINEAR_ALL; ++fvar) {
+    for (auto boundary : {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
+                          Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
+        for (int fvar = Sdc::Options::FVAR_LINEAR_NONE; fvar <= Sdc::Options::FVAR_LINEAR_ALL;
+             ++fvar) {
             for (bool isOther : {false, true}) {
                 options.SetVtxBoundaryInterpolation(boundary);
-                options.SetFVarLinearInterpolation(static_cast<Sdc::Options::FVarLinearInterpolation>(fvar));
-                options.SetCreasingMethod(isOther ? Sdc::Options::CREASE_CHAIKIN : Sdc::Options::CREASE_UNIFORM);
-                options.SetTriangleSubdivision(isOther ? Sdc::Options::TRI_SUB_SMOOTH : Sdc::Options::TRI_SUB_CATMARK);
+                options.SetFVarLinearInterpolation(
+                    static_cast<Sdc::Options::FVarLinearInterpolation>(fvar));
+                options.SetCreasingMethod(isOther ? Sdc::Options::CREASE_CHAIKIN
+                                                  : Sdc::Options::CREASE_UNIFORM);
+                options.SetTriangleSubdivision(isOther ? Sdc::Options::TRI_SUB_SMOOTH
+                                                       : Sdc::Options::TRI_SUB_CATMARK);
                 auto const back = RoundTrip(scene, "a.obj", false).cage.options;
                 EXPECT_EQ(back.GetVtxBoundaryInterpolation(), boundary);
                 EXPECT_EQ(back.GetFVarLinearInterpolation(), fvar);
@@ -194,7 +209,8 @@ TEST(MeshWriter, ObjKeepsUVSharingAndOrder) {
     Scene const scene = test::LoadData("opensubdiv_shapes/catmark_cube.obj");
     Scene const back = RoundTrip(scene, "a.obj", true);
     EXPECT_EQ(back.uvs, scene.uvs);
-    EXPECT_EQ(back.cage.fvarChannels.at(0).valueIndices, scene.cage.fvarChannels.at(0).valueIndices);
+    EXPECT_EQ(back.cage.fvarChannels.at(0).valueIndices,
+              scene.cage.fvarChannels.at(0).valueIndices);
 }
 
 TEST(MeshWriter, PlyKeepsPrimvars) {
@@ -261,15 +277,18 @@ TEST(MeshWriter, RefinedMeshReadsBackWithItsTags) {
     EXPECT_EQ(back.cage.creaseSharpness, fine.cage.creaseSharpness);
 }
 
-// Normals go with the vertices, beside texture coordinates or alone; a reader that leaves them out reads the same mesh.
+// Normals go with the vertices, beside texture coordinates or alone; a reader that leaves them out
+// reads the same mesh.
 TEST(MeshWriter, NormalsAreThoseOfTheVertices) {
     for (bool hasUVs : {false, true}) {
         Scene scene = hasUVs ? test::MakeTorus(5, 4) : test::MakeCube();
         Scene const plain = scene;
-        for (Index vertex = 0; vertex < scene.cage.numVertices; ++vertex) scene.normals.insert(scene.normals.end(), {0.25 * vertex, 0.5, -1.0});
+        for (Index vertex = 0; vertex < scene.cage.numVertices; ++vertex)
+            scene.normals.insert(scene.normals.end(), {0.25 * vertex, 0.5, -1.0});
         std::string const text = engine::FormatMesh("a.obj", scene, true, nullptr);
         std::string const first = std::to_string(scene.cage.faceVertices[0] + 1);
-        std::string const uv = hasUVs ? std::to_string(scene.cage.fvarChannels[0].valueIndices[0] + 1) : "";
+        std::string const uv =
+            hasUVs ? std::to_string(scene.cage.fvarChannels[0].valueIndices[0] + 1) : "";
         EXPECT_NE(text.find("\nf " + first + "/" + uv + "/" + first + " "), std::string::npos);
         EXPECT_NE(text.find("\nvn 0.25 0.5 -1\n"), std::string::npos);
         Scene const read = RoundTrip(scene, "a.obj", true);

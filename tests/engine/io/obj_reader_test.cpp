@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/io/obj_reader.h"
 
 #include <locale>
@@ -42,7 +43,9 @@ void ExpectSameMesh(Scene const& a, Scene const& b) {
 // -------- geometry
 
 TEST(ObjReader, ReadsPositionsFacesAndTheirLines) {
-    Scene const scene = Parse("# a comment\n\nmtllib x.mtl\nv 1 2 3\nv .5 -.5e1 +7 # here too\nv 4 5 6\nvn 0 0 1\nf 1 2 3\n");
+    Scene const scene = Parse(
+        "# a comment\n\nmtllib x.mtl\nv 1 2 3\nv .5 -.5e1 +7 # here too\nv 4 5 6\nvn 0 0 1\nf 1 2 "
+        "3\n");
     EXPECT_EQ(scene.positions, (std::vector<double>{1, 2, 3, 0.5, -5, 7, 4, 5, 6}));
     EXPECT_EQ(scene.cage.numVertices, 3);
     EXPECT_EQ(scene.cage.faceVertices, (std::vector<Index>{0, 1, 2}));
@@ -52,13 +55,16 @@ TEST(ObjReader, ReadsPositionsFacesAndTheirLines) {
 
 TEST(ObjReader, NegativeIndicesCountBackFromTheirOwnLine) {
     // The first face sees 3 vertices, so -1 is vertex 2; the second sees 5, so -1 is vertex 4.
-    Scene const scene = Parse("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf -3/-1 -2/-1 -1/-1\nv 0 0 1\nv 0 0 2\nvt 1 1\nf -1/-1 -2/-2 1/1\n");
+    Scene const scene = Parse(
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf -3/-1 -2/-1 -1/-1\nv 0 0 1\nv 0 0 2\nvt 1 1\nf -1/-1 "
+        "-2/-2 1/1\n");
     EXPECT_EQ(scene.cage.faceVertices, (std::vector<Index>{0, 1, 2, 4, 3, 0}));
     EXPECT_EQ(scene.cage.fvarChannels.at(0).valueIndices, (std::vector<Index>{0, 0, 0, 1, 0, 0}));
 }
 
 TEST(ObjReader, CrlfLineEndsChangeNothing) {
-    std::string const text = kQuadVertices + "vt 0 0\nvt 1 0\nusemtl red\nf 1/1 2/2 3/2 4/1\nt crease 2/1/0 0 1 2.5\n";
+    std::string const text =
+        kQuadVertices + "vt 0 0\nvt 1 0\nusemtl red\nf 1/1 2/2 3/2 4/1\nt crease 2/1/0 0 1 2.5\n";
     std::string crlf;
     for (char c : text) crlf += c == '\n' ? std::string("\r\n") : std::string(1, c);
     Scene const unix = Parse(text), dos = Parse(crlf);
@@ -121,8 +127,10 @@ TEST(ObjReader, TextureCoordinatesAreOptional) {
 }
 
 TEST(ObjReader, CornersNameTextureCoordinatesWithOrWithoutNormals) {
-    Scene const scene = Parse(kQuadVertices + "vt 0 0.25\nvt 1 0 9\nvt 0.5\nf 1/1 2/2 3/3\nf 1/3/7 3/2/7 4/1/7\n");
-    EXPECT_EQ(scene.uvs, (std::vector<double>{0, 0.25, 1, 0, 0.5, 0}));  // w is dropped, v defaults to 0
+    Scene const scene =
+        Parse(kQuadVertices + "vt 0 0.25\nvt 1 0 9\nvt 0.5\nf 1/1 2/2 3/3\nf 1/3/7 3/2/7 4/1/7\n");
+    EXPECT_EQ(scene.uvs,
+              (std::vector<double>{0, 0.25, 1, 0, 0.5, 0}));  // w is dropped, v defaults to 0
     EXPECT_EQ(scene.cage.fvarChannels.at(0).numValues, 3);
     EXPECT_EQ(scene.cage.fvarChannels.at(0).valueIndices, (std::vector<Index>{0, 1, 2, 2, 1, 0}));
 }
@@ -137,7 +145,8 @@ TEST(ObjReader, MeshWithSomeFacesWithoutTextureIndicesHasNoUVsAndSaysSo) {
     EXPECT_FALSE(scene.HasUVs());
     EXPECT_TRUE(scene.cage.fvarChannels.empty());
     ASSERT_EQ(scene.warnings.size(), 1u);
-    EXPECT_NE(scene.warnings[0].find("mesh.obj:7: 1 of 2 faces have no texture indices"), std::string::npos)
+    EXPECT_NE(scene.warnings[0].find("mesh.obj:7: 1 of 2 faces have no texture indices"),
+              std::string::npos)
         << scene.warnings[0];
 }
 
@@ -145,7 +154,8 @@ TEST(ObjReader, MeshWithSomeFacesWithoutTextureIndicesHasNoUVsAndSaysSo) {
 
 TEST(ObjReader, KeepsGroupsOfAllThreeKinds) {
     Scene const scene = Parse(kQuadVertices +
-                              "f 1 2 3\no body\nusemtl red\nf 1 2 3\ng left side\nf 1 2 4\nusemtl blue\ng\nf 1 3 4\nusemtl red\nf 2 3 4\n");
+                              "f 1 2 3\no body\nusemtl red\nf 1 2 3\ng left side\nf 1 2 4\nusemtl "
+                              "blue\ng\nf 1 3 4\nusemtl red\nf 2 3 4\n");
     auto const& [materials, groups, objects] = scene.groups;
     EXPECT_EQ(materials.names, (std::vector<std::string>{"red", "blue"}));
     EXPECT_EQ(materials.faceGroup, (std::vector<Index>{-1, 0, 0, 1, 0}));
@@ -155,18 +165,22 @@ TEST(ObjReader, KeepsGroupsOfAllThreeKinds) {
 }
 
 TEST(ObjReader, SelectsTheFacesOfNamedGroups) {
-    Scene const scene = Parse(kQuadVertices + "usemtl red\nf 1 2 3\ng left\nf 1 2 4\nusemtl blue\nf 1 3 4\n");
+    Scene const scene =
+        Parse(kQuadVertices + "usemtl red\nf 1 2 3\ng left\nf 1 2 4\nusemtl blue\nf 1 3 4\n");
     EXPECT_EQ(engine::SelectGroups(scene, {"red"}), (std::vector<char>{1, 1, 0}));
     EXPECT_EQ(engine::SelectGroups(scene, {"left"}), (std::vector<char>{0, 1, 1}));
 }
 
 // `g` takes several names; materials and objects have one, which may hold blanks.
 TEST(ObjReader, AFaceIsInEachOfTheGroupsNamedAfterG) {
-    Scene const scene = Parse(kQuadVertices + "g left arm\nf 1 2 3\ng left\nf 1 2 4\ng arm\tright\nusemtl dark blue\nf 1 3 4\n");
+    Scene const scene =
+        Parse(kQuadVertices +
+              "g left arm\nf 1 2 3\ng left\nf 1 2 4\ng arm\tright\nusemtl dark blue\nf 1 3 4\n");
     EXPECT_EQ(engine::SelectGroups(scene, {"left"}), (std::vector<char>{1, 1, 0}));
     EXPECT_EQ(engine::SelectGroups(scene, {"arm"}), (std::vector<char>{1, 0, 1}));
     EXPECT_EQ(engine::SelectGroups(scene, {"right", "dark blue"}), (std::vector<char>{0, 0, 1}));
-    EXPECT_EQ(engine::ListGroups(scene), (std::vector<std::string>{"dark blue", "left", "arm", "right"}));
+    EXPECT_EQ(engine::ListGroups(scene),
+              (std::vector<std::string>{"dark blue", "left", "arm", "right"}));
     EXPECT_FALSE(test::RefusalOf([&] { engine::SelectGroups(scene, {"left arm"}); }).empty());
 }
 
@@ -201,7 +215,8 @@ TEST(ObjReader, CreaseChainMayHaveASharpnessForEachEdge) {
 }
 
 TEST(ObjReader, CornerTagNamesOneVertexOrMore) {
-    Scene const scene = Parse(kQuad + "t corner 1/1/0 3 2\nt corner 2/1/0 0 1 4\nt corner 2/2/0 1 2 5 6\n");
+    Scene const scene =
+        Parse(kQuad + "t corner 1/1/0 3 2\nt corner 2/1/0 0 1 4\nt corner 2/2/0 1 2 5 6\n");
     EXPECT_EQ(scene.cage.cornerVertices, (std::vector<Index>{3, 0, 1, 1, 2}));
     EXPECT_EQ(scene.cage.cornerSharpness, (std::vector<float>{2, 4, 4, 5, 6}));
 }
@@ -229,40 +244,50 @@ TEST(ObjReader, BoundaryTagSetsTheBoundaryRule) {
 }
 
 TEST(ObjReader, FaceVaryingTagSetsTheFaceVaryingRule) {
-    // assets/README.md: 0 none, 1 corners only, 2 corners plus1, 3 corners plus2, 4 boundaries, 5 all
+    // assets/README.md: 0 none, 1 corners only, 2 corners plus1, 3 corners plus2, 4 boundaries, 5
+    // all
     Sdc::Options::FVarLinearInterpolation const rules[] = {
         Sdc::Options::FVAR_LINEAR_NONE,          Sdc::Options::FVAR_LINEAR_CORNERS_ONLY,
         Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1, Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2,
         Sdc::Options::FVAR_LINEAR_BOUNDARIES,    Sdc::Options::FVAR_LINEAR_ALL};
     for (int value = 0; value < 6; ++value) {
-        Scene const scene = Parse(kQuad + fmt::format("t facevaryinginterpolateboundary 1/0/0 {}\n", value));
+        Scene const scene =
+            Parse(kQuad + fmt::format("t facevaryinginterpolateboundary 1/0/0 {}\n", value));
         EXPECT_EQ(scene.cage.options.GetFVarLinearInterpolation(), rules[value]) << value;
         EXPECT_TRUE(scene.hasFVarTag);
     }
 }
 
 TEST(ObjReader, CreaseMethodTagSetsTheCreaseRule) {
-    EXPECT_EQ(Parse(kQuad + "t creasemethod 0/0/1 chaikin\n").cage.options.GetCreasingMethod(), Sdc::Options::CREASE_CHAIKIN);
-    EXPECT_EQ(Parse(kQuad + "t creasemethod 0/0/1 normal\n").cage.options.GetCreasingMethod(), Sdc::Options::CREASE_UNIFORM);
+    EXPECT_EQ(Parse(kQuad + "t creasemethod 0/0/1 chaikin\n").cage.options.GetCreasingMethod(),
+              Sdc::Options::CREASE_CHAIKIN);
+    EXPECT_EQ(Parse(kQuad + "t creasemethod 0/0/1 normal\n").cage.options.GetCreasingMethod(),
+              Sdc::Options::CREASE_UNIFORM);
 }
 
 TEST(ObjReader, SmoothTrianglesTagSetsTheTriangleRule) {
-    EXPECT_EQ(Parse(kQuad + "t smoothtriangles 0/0/1 smooth\n").cage.options.GetTriangleSubdivision(),
-              Sdc::Options::TRI_SUB_SMOOTH);
-    EXPECT_EQ(Parse(kQuad + "t smoothtriangles 0/0/1 catmark\n").cage.options.GetTriangleSubdivision(),
-              Sdc::Options::TRI_SUB_CATMARK);
+    EXPECT_EQ(
+        Parse(kQuad + "t smoothtriangles 0/0/1 smooth\n").cage.options.GetTriangleSubdivision(),
+        Sdc::Options::TRI_SUB_SMOOTH);
+    EXPECT_EQ(
+        Parse(kQuad + "t smoothtriangles 0/0/1 catmark\n").cage.options.GetTriangleSubdivision(),
+        Sdc::Options::TRI_SUB_CATMARK);
 }
 
 TEST(ObjReader, FileWithoutTagsHasTheDefaultRules) {
     Scene const scene = Parse(kQuad);
-    EXPECT_EQ(scene.cage.options.GetVtxBoundaryInterpolation(), Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
-    EXPECT_EQ(scene.cage.options.GetFVarLinearInterpolation(), Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1);
+    EXPECT_EQ(scene.cage.options.GetVtxBoundaryInterpolation(),
+              Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
+    EXPECT_EQ(scene.cage.options.GetFVarLinearInterpolation(),
+              Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1);
     EXPECT_FALSE(scene.hasBoundaryTag);
     EXPECT_FALSE(scene.hasFVarTag);
 }
 
 TEST(ObjReader, TagsItCannotHonourAreNamedInWarnings) {
-    Scene const scene = Parse(kQuad + "t vertexedit 2/3/2 0 1 1 2 3 a b\nt edgeedit 1/1/1 x\nt faceedit 1/1/1 x\nt sparkle 1/0/0 3\n");
+    Scene const scene = Parse(kQuad +
+                              "t vertexedit 2/3/2 0 1 1 2 3 a b\nt edgeedit 1/1/1 x\nt faceedit "
+                              "1/1/1 x\nt sparkle 1/0/0 3\n");
     ASSERT_EQ(scene.warnings.size(), 4u);
     size_t line = 6;
     for (std::string const name : {"vertexedit", "edgeedit", "faceedit", "sparkle"}) {
@@ -280,14 +305,17 @@ struct Refusal {
     std::vector<std::string> says;
 };
 
-void PrintTo(Refusal const& refusal, std::ostream* out) { *out << refusal.name; }
+void PrintTo(Refusal const& refusal, std::ostream* out) {
+    *out << refusal.name;
+}
 
 class ObjRefusal : public testing::TestWithParam<Refusal> {};
 
 TEST_P(ObjRefusal, NamesLineReasonAndRemedy) {
     std::string const message = RefusalOfText(GetParam().text);
     EXPECT_EQ(message.find(GetParam().where), 0u) << message;
-    for (std::string const& part : GetParam().says) EXPECT_NE(message.find(part), std::string::npos) << part << "\nnot in: " << message;
+    for (std::string const& part : GetParam().says)
+        EXPECT_NE(message.find(part), std::string::npos) << part << "\nnot in: " << message;
     EXPECT_LT(message.size(), 400u) << "a message is one line that can be read";
     EXPECT_EQ(message.find('\n'), std::string::npos);
 }
@@ -295,60 +323,167 @@ TEST_P(ObjRefusal, NamesLineReasonAndRemedy) {
 INSTANTIATE_TEST_SUITE_P(
     Of, ObjRefusal,
     testing::Values(
-        Refusal{"NotANumber", "v 0 zero 0\n", "mesh.obj:1: ", {"y is 'zero'", "finite number is needed"}},
+        Refusal{"NotANumber",
+                "v 0 zero 0\n",
+                "mesh.obj:1: ",
+                {"y is 'zero'", "finite number is needed"}},
         Refusal{"MissingNumber", "v 0 0\n", "mesh.obj:1: ", {"z is missing"}},
         Refusal{"NumberWithATail", "v 0 0 1.5x\n", "mesh.obj:1: ", {"z is '1.5x'"}},
         Refusal{"CommaForAPoint", "v 0 0 1,5\n", "mesh.obj:1: ", {"z is '1,5'"}},
-        Refusal{"NumberBeyondDouble", "v 0 0 1e999\n", "mesh.obj:1: ", {"z is '1e999'", "at most 1e+30 in magnitude"}},
+        Refusal{"NumberBeyondDouble",
+                "v 0 0 1e999\n",
+                "mesh.obj:1: ",
+                {"z is '1e999'", "at most 1e+30 in magnitude"}},
         Refusal{"Nan", "v nan 0 0\n", "mesh.obj:1: ", {"x is 'nan'", "finite number is needed"}},
         Refusal{"NegativeNan", "v 0 -nan 0\n", "mesh.obj:1: ", {"y is '-nan'"}},
         Refusal{"WindowsNan", "v 0 0 1.#IND\n", "mesh.obj:1: ", {"z is '1.#IND'"}},
-        Refusal{"Infinity", "v 0 inf 0\n", "mesh.obj:1: ", {"y is 'inf'", "finite number is needed"}},
+        Refusal{
+            "Infinity", "v 0 inf 0\n", "mesh.obj:1: ", {"y is 'inf'", "finite number is needed"}},
         Refusal{"NegativeInfinity", "v 0 0 -Infinity\n", "mesh.obj:1: ", {"z is '-Infinity'"}},
         Refusal{"NanInATextureCoordinate", "v 0 0 0\nvt 0 NaN\n", "mesh.obj:2: ", {"v is 'NaN'"}},
-        Refusal{"NanInASharpness", kQuad + "t crease 2/1/0 0 1 nan\n", "mesh.obj:6: ", {"sharpness", "'nan'"}},
-        Refusal{"IndexZero", kQuadVertices + "f 0 1 2\n", "mesh.obj:5: ", {"vertex index is '0'", "1 to 4"}},
-        Refusal{"IndexTooLarge", kQuadVertices + "f 1 2 5\n", "mesh.obj:5: ", {"vertex index is '5'", "1 to 4"}},
-        Refusal{"IndexTooNegative", kQuadVertices + "f 1 2 -5\n", "mesh.obj:5: ", {"vertex index is '-5'", "-4 to -1"}},
-        Refusal{"IndexBeyond32Bits", kQuadVertices + "f 1 2 4294967297\n", "mesh.obj:5: ", {"4294967297", "1 to 4"}},
-        Refusal{"IndexBeyond64Bits", kQuadVertices + "f 1 2 18446744073709551617\n", "mesh.obj:5: ", {"1 to 4"}},
-        Refusal{"IndexOfAHundredThousandDigits", kQuadVertices + "f 1 2 " + std::string(100000, '7') + "\n", "mesh.obj:5: ",
+        Refusal{"NanInASharpness",
+                kQuad + "t crease 2/1/0 0 1 nan\n",
+                "mesh.obj:6: ",
+                {"sharpness", "'nan'"}},
+        Refusal{"IndexZero",
+                kQuadVertices + "f 0 1 2\n",
+                "mesh.obj:5: ",
+                {"vertex index is '0'", "1 to 4"}},
+        Refusal{"IndexTooLarge",
+                kQuadVertices + "f 1 2 5\n",
+                "mesh.obj:5: ",
+                {"vertex index is '5'", "1 to 4"}},
+        Refusal{"IndexTooNegative",
+                kQuadVertices + "f 1 2 -5\n",
+                "mesh.obj:5: ",
+                {"vertex index is '-5'", "-4 to -1"}},
+        Refusal{"IndexBeyond32Bits",
+                kQuadVertices + "f 1 2 4294967297\n",
+                "mesh.obj:5: ",
+                {"4294967297", "1 to 4"}},
+        Refusal{"IndexBeyond64Bits",
+                kQuadVertices + "f 1 2 18446744073709551617\n",
+                "mesh.obj:5: ",
                 {"1 to 4"}},
-        Refusal{"IndexWithAFraction", kQuadVertices + "f 1 2 3.5\n", "mesh.obj:5: ", {"'3.5'", "v/vt/vn"}},
-        Refusal{"IndexThatIsAWord", kQuadVertices + "f 1 2 three\n", "mesh.obj:5: ", {"'three'", "integer is needed"}},
-        Refusal{"FaceBeforeItsVertices", "f 1 2 3\n" + kQuadVertices, "mesh.obj:1: ", {"no vertex stands before this line"}},
-        Refusal{"TextureIndexWithoutAny", kQuadVertices + "f 1/1 2/1 3/1\n", "mesh.obj:5: ", {"texture index is '1'"}},
-        Refusal{"TextureIndexTooLarge", kQuadVertices + "vt 0 0\nf 1/1 2/2 3/1\n", "mesh.obj:6: ", {"texture index is '2'", "1 to 1"}},
-        Refusal{"TextureIndexOnSomeCorners", kQuadVertices + "vt 0 0\nf 1/1 2 3/1\n", "mesh.obj:6: ", {"2 of a face's 3", "all or none"}},
-        Refusal{"LineContinuation", kQuadVertices + "f 1 2 \\\n3 4\n", "mesh.obj:5: ", {"integer is needed"}},
-        Refusal{"FaceWithTwoCorners", kQuadVertices + "f 1 2\n", "mesh.obj:5: ", {"2 corners", "at least 3"}},
-        Refusal{"FaceWithoutCorners", kQuadVertices + "f\n", "mesh.obj:5: ", {"0 corners", "at least 3"}},
-        Refusal{"NoFaces", kQuadVertices + "l 1 2 3\n", "mesh.obj:5: ", {"no faces", "limn needs polygons"}},
-        Refusal{"CutShort", kQuadVertices + "v 5 5 5\nf 1 2 3", "mesh.obj:6: ", {"2 vertices unused", "cut short"}},
-        Refusal{"Utf16", std::string("\xfe\xff\0v\0 \0000", 8), "mesh.obj:1: ", {"not text", "UTF-8 is needed"}},
+        Refusal{"IndexOfAHundredThousandDigits",
+                kQuadVertices + "f 1 2 " + std::string(100000, '7') + "\n",
+                "mesh.obj:5: ",
+                {"1 to 4"}},
+        Refusal{"IndexWithAFraction",
+                kQuadVertices + "f 1 2 3.5\n",
+                "mesh.obj:5: ",
+                {"'3.5'", "v/vt/vn"}},
+        Refusal{"IndexThatIsAWord",
+                kQuadVertices + "f 1 2 three\n",
+                "mesh.obj:5: ",
+                {"'three'", "integer is needed"}},
+        Refusal{"FaceBeforeItsVertices",
+                "f 1 2 3\n" + kQuadVertices,
+                "mesh.obj:1: ",
+                {"no vertex stands before this line"}},
+        Refusal{"TextureIndexWithoutAny",
+                kQuadVertices + "f 1/1 2/1 3/1\n",
+                "mesh.obj:5: ",
+                {"texture index is '1'"}},
+        Refusal{"TextureIndexTooLarge",
+                kQuadVertices + "vt 0 0\nf 1/1 2/2 3/1\n",
+                "mesh.obj:6: ",
+                {"texture index is '2'", "1 to 1"}},
+        Refusal{"TextureIndexOnSomeCorners",
+                kQuadVertices + "vt 0 0\nf 1/1 2 3/1\n",
+                "mesh.obj:6: ",
+                {"2 of a face's 3", "all or none"}},
+        Refusal{"LineContinuation",
+                kQuadVertices + "f 1 2 \\\n3 4\n",
+                "mesh.obj:5: ",
+                {"integer is needed"}},
+        Refusal{"FaceWithTwoCorners",
+                kQuadVertices + "f 1 2\n",
+                "mesh.obj:5: ",
+                {"2 corners", "at least 3"}},
+        Refusal{"FaceWithoutCorners",
+                kQuadVertices + "f\n",
+                "mesh.obj:5: ",
+                {"0 corners", "at least 3"}},
+        Refusal{"NoFaces",
+                kQuadVertices + "l 1 2 3\n",
+                "mesh.obj:5: ",
+                {"no faces", "limn needs polygons"}},
+        Refusal{"CutShort",
+                kQuadVertices + "v 5 5 5\nf 1 2 3",
+                "mesh.obj:6: ",
+                {"2 vertices unused", "cut short"}},
+        Refusal{"Utf16",
+                std::string("\xfe\xff\0v\0 \0000", 8),
+                "mesh.obj:1: ",
+                {"not text", "UTF-8 is needed"}},
         Refusal{"ControlCharacters", std::string("\x01\x02\x03\n"), "mesh.obj:1: ", {"not text"}},
-        Refusal{"CreaseOfAVertexThatIsNot", kQuad + "t crease 2/1/0 0 4 1\n", "mesh.obj:6: ", {"'crease'", "vertex 4", "0 to 3", "0-based"}},
-        Refusal{"SecondCreaseOfAVertexThatIsNot", kQuad + "t crease 3/1/0 0 1 2 1\nt crease 2/1/0 -1 0 1\n", "mesh.obj:7: ", {"vertex -1", "0 to 3"}},
-        Refusal{"CornerOfAVertexThatIsNot", kQuad + "t corner 1/1/0 4 1\n", "mesh.obj:6: ", {"'corner'", "vertex 4", "0 to 3"}},
-        Refusal{"HoleOfAFaceThatIsNot", kQuad + "t hole 1/0/0 1\n", "mesh.obj:6: ", {"'hole'", "face 1", "0 to 0"}},
-        Refusal{"NegativeSharpness", kQuad + "t crease 2/1/0 0 1 -1\n", "mesh.obj:6: ", {"sharpness is -1", "0 or more"}},
-        Refusal{"CreaseWithoutSharpness", kQuad + "t crease 2/0/0 0 1\n", "mesh.obj:6: ", {"crease", "2/1/0"}},
-        Refusal{"CreaseWithTooFewWords", kQuad + "t crease 2/1/0 0 1\n", "mesh.obj:6: ", {"sharpness is missing"}},
-        Refusal{"CreaseOfABillionVertices", kQuad + "t crease 1000000000/1/0 0 1\n", "mesh.obj:6: ", {"missing"}},
-        Refusal{"TagIndexWithAFraction", kQuad + "t hole 1/0/0 0.5\n", "mesh.obj:6: ", {"0.5 is not an index"}},
-        Refusal{"TagWithoutCounts", kQuad + "t crease 0 1 2\n", "mesh.obj:6: ", {"counts are '0'", "2/1/0"}},
-        Refusal{"UnknownBoundaryRule", kQuad + "t interpolateboundary 1/0/0 3\n", "mesh.obj:6: ", {"interpolateboundary is 3", "edge only"}},
-        Refusal{"UnknownFaceVaryingRule", kQuad + "t facevaryinginterpolateboundary 1/0/0 6\n", "mesh.obj:6: ", {"is 6", "0 to 5"}},
-        Refusal{"UnknownCreaseMethod", kQuad + "t creasemethod 0/0/1 best\n", "mesh.obj:6: ", {"'best'", "'chaikin'"}},
-        Refusal{"UnknownTriangleRule", kQuad + "t smoothtriangles 0/0/1 round\n", "mesh.obj:6: ", {"'round'", "'smooth'"}}),
+        Refusal{"CreaseOfAVertexThatIsNot",
+                kQuad + "t crease 2/1/0 0 4 1\n",
+                "mesh.obj:6: ",
+                {"'crease'", "vertex 4", "0 to 3", "0-based"}},
+        Refusal{"SecondCreaseOfAVertexThatIsNot",
+                kQuad + "t crease 3/1/0 0 1 2 1\nt crease 2/1/0 -1 0 1\n",
+                "mesh.obj:7: ",
+                {"vertex -1", "0 to 3"}},
+        Refusal{"CornerOfAVertexThatIsNot",
+                kQuad + "t corner 1/1/0 4 1\n",
+                "mesh.obj:6: ",
+                {"'corner'", "vertex 4", "0 to 3"}},
+        Refusal{"HoleOfAFaceThatIsNot",
+                kQuad + "t hole 1/0/0 1\n",
+                "mesh.obj:6: ",
+                {"'hole'", "face 1", "0 to 0"}},
+        Refusal{"NegativeSharpness",
+                kQuad + "t crease 2/1/0 0 1 -1\n",
+                "mesh.obj:6: ",
+                {"sharpness is -1", "0 or more"}},
+        Refusal{"CreaseWithoutSharpness",
+                kQuad + "t crease 2/0/0 0 1\n",
+                "mesh.obj:6: ",
+                {"crease", "2/1/0"}},
+        Refusal{"CreaseWithTooFewWords",
+                kQuad + "t crease 2/1/0 0 1\n",
+                "mesh.obj:6: ",
+                {"sharpness is missing"}},
+        Refusal{"CreaseOfABillionVertices",
+                kQuad + "t crease 1000000000/1/0 0 1\n",
+                "mesh.obj:6: ",
+                {"missing"}},
+        Refusal{"TagIndexWithAFraction",
+                kQuad + "t hole 1/0/0 0.5\n",
+                "mesh.obj:6: ",
+                {"0.5 is not an index"}},
+        Refusal{"TagWithoutCounts",
+                kQuad + "t crease 0 1 2\n",
+                "mesh.obj:6: ",
+                {"counts are '0'", "2/1/0"}},
+        Refusal{"UnknownBoundaryRule",
+                kQuad + "t interpolateboundary 1/0/0 3\n",
+                "mesh.obj:6: ",
+                {"interpolateboundary is 3", "edge only"}},
+        Refusal{"UnknownFaceVaryingRule",
+                kQuad + "t facevaryinginterpolateboundary 1/0/0 6\n",
+                "mesh.obj:6: ",
+                {"is 6", "0 to 5"}},
+        Refusal{"UnknownCreaseMethod",
+                kQuad + "t creasemethod 0/0/1 best\n",
+                "mesh.obj:6: ",
+                {"'best'", "'chaikin'"}},
+        Refusal{"UnknownTriangleRule",
+                kQuad + "t smoothtriangles 0/0/1 round\n",
+                "mesh.obj:6: ",
+                {"'round'", "'smooth'"}}),
     [](testing::TestParamInfo<Refusal> const& instance) { return instance.param.name; });
 
 // -------- hostile bytes
 
 TEST(ObjReader, DamagedFilesAreReadOrRefusedButNeverMore) {
-    std::string const whole = kQuadVertices +
-                              "vt 0 0\nvt 1 0\nvt 1 1\nusemtl a\ng b\nf 1/1 2/2 3/3\nf -4/1/1 -2/2/2 -1/3/3\nt crease 3/2/0 0 1 2 1 "
-                              "2\nt corner 1/1/0 3 2\nt hole 1/0/0 1\nt interpolateboundary 1/0/0 2\n";
+    std::string const whole =
+        kQuadVertices +
+        "vt 0 0\nvt 1 0\nvt 1 1\nusemtl a\ng b\nf 1/1 2/2 3/3\nf -4/1/1 -2/2/2 -1/3/3\nt crease "
+        "3/2/0 0 1 2 1 "
+        "2\nt corner 1/1/0 3 2\nt hole 1/0/0 1\nt interpolateboundary 1/0/0 2\n";
     int numRead = 0;
     for (unsigned seed = 0; seed < 2000; ++seed) {
         try {
@@ -364,7 +499,8 @@ TEST(ObjReader, DamagedFilesAreReadOrRefusedButNeverMore) {
 
 TEST(ObjReader, GarbageIsRefused) {
     for (unsigned seed = 0; seed < 50; ++seed) {
-        for (std::string const& beginning : {std::string(), std::string("v 0 0 0\nf "), std::string("t crease ")}) {
+        for (std::string const& beginning :
+             {std::string(), std::string("v 0 0 0\nf "), std::string("t crease ")}) {
             EXPECT_THROW(Parse(test::Garbage(beginning, seed)), Error) << seed;
         }
     }

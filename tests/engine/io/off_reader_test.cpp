@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/io/off_reader.h"
 
 #include <locale>
@@ -38,8 +39,9 @@ TEST(OffReader, ReadsVerticesAndFaces) {
 }
 
 TEST(OffReader, CommentsEmptyLinesAndCountsBesideTheKeywordChangeNothing) {
-    Scene const scene =
-        Parse("# made by hand\nOFF 4 1 # no edges given\n\n0 0 0\n1 0 0 # right\n\n1 1 0\n# between\n0 1 0\n4 0 1 2 3\n");
+    Scene const scene = Parse(
+        "# made by hand\nOFF 4 1 # no edges given\n\n0 0 0\n1 0 0 # right\n\n1 1 0\n# between\n0 1 "
+        "0\n4 0 1 2 3\n");
     EXPECT_EQ(scene.positions, Parse(kQuad).positions);
     EXPECT_EQ(scene.cage.faceVertices, Parse(kQuad).cage.faceVertices);
 }
@@ -54,33 +56,43 @@ TEST(OffReader, CrlfAndMissingLastLineEndChangeNothing) {
 }
 
 TEST(OffReader, FaceColoursAreSkipped) {
-    Scene const scene = Parse("OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 255 0 0\n3 0 2 3 0.5 0.5 0.5 1\n");
+    Scene const scene =
+        Parse("OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 255 0 0\n3 0 2 3 0.5 0.5 0.5 1\n");
     EXPECT_EQ(scene.cage.faceVertices, (std::vector<Index>{0, 1, 2, 0, 2, 3}));
 }
 
 TEST(OffReader, VertexColoursOfCoffArePrimvars) {
-    Scene const scene = Parse("COFF\n3 1 0\n0 0 0 1 .5 .25 1\n1 0 0 0 0 0 1\n0 1 0 1 1 1 0\n3 0 1 2\n");
+    Scene const scene =
+        Parse("COFF\n3 1 0\n0 0 0 1 .5 .25 1\n1 0 0 0 0 0 1\n0 1 0 1 1 1 0\n3 0 1 2\n");
     ASSERT_EQ(scene.primvars.size(), 1u);
     EXPECT_EQ(scene.primvars[0].name, "color");
-    EXPECT_EQ(scene.primvars[0].values, (std::vector<float>{1, 0.5f, 0.25f, 1, 0, 0, 0, 1, 1, 1, 1, 0}));
+    EXPECT_EQ(scene.primvars[0].values,
+              (std::vector<float>{1, 0.5f, 0.25f, 1, 0, 0, 0, 1, 1, 1, 1, 0}));
 }
 
 std::vector<float> ColoursOf(std::string const& first, std::string const& second) {
-    return Parse("COFF\n3 1 0\n0 0 0 " + first + "\n1 0 0 " + second + "\n0 1 0 0 0 0 0\n3 0 1 2\n").primvars.at(0).values;
+    return Parse("COFF\n3 1 0\n0 0 0 " + first + "\n1 0 0 " + second + "\n0 1 0 0 0 0 0\n3 0 1 2\n")
+        .primvars.at(0)
+        .values;
 }
 
 // Bytes of a PLY become the same numbers: value * (1.0 / 255), rounded to float.
 TEST(OffReader, WholeVertexColoursUpTo255BecomeSharesOf255) {
     auto const share = [](int byte) { return static_cast<float>(byte * (1.0 / 255)); };
     EXPECT_EQ(ColoursOf("255 128 0 255", "1 2 3 254"),
-              (std::vector<float>{1, share(128), 0, 1, share(1), share(2), share(3), share(254), 0, 0, 0, 0}));
+              (std::vector<float>{1, share(128), 0, 1, share(1), share(2), share(3), share(254), 0,
+                                  0, 0, 0}));
 }
 
 TEST(OffReader, OtherVertexColoursStayAsTheyAre) {
-    EXPECT_EQ(ColoursOf("1 0 0 1", "0 0 1 1"), (std::vector<float>{1, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0}));        // 0 to 1
-    EXPECT_EQ(ColoursOf("2 0.5 0 1", "0 0 1 1"), (std::vector<float>{2, 0.5f, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0}));   // brighter than white
-    EXPECT_EQ(ColoursOf("256 0 0 1", "0 0 1 1"), (std::vector<float>{256, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0}));    // no bytes
-    EXPECT_EQ(ColoursOf("-1 0 0 1", "0 0 2 1"), (std::vector<float>{-1, 0, 0, 1, 0, 0, 2, 1, 0, 0, 0, 0}));
+    EXPECT_EQ(ColoursOf("1 0 0 1", "0 0 1 1"),
+              (std::vector<float>{1, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0}));  // 0 to 1
+    EXPECT_EQ(ColoursOf("2 0.5 0 1", "0 0 1 1"),
+              (std::vector<float>{2, 0.5f, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0}));  // brighter than white
+    EXPECT_EQ(ColoursOf("256 0 0 1", "0 0 1 1"),
+              (std::vector<float>{256, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0}));  // no bytes
+    EXPECT_EQ(ColoursOf("-1 0 0 1", "0 0 2 1"),
+              (std::vector<float>{-1, 0, 0, 1, 0, 0, 2, 1, 0, 0, 0, 0}));
 }
 
 TEST(OffReader, NumbersDoNotDependOnTheLocale) {
@@ -98,14 +110,17 @@ struct Refusal {
     std::vector<std::string> says;
 };
 
-void PrintTo(Refusal const& refusal, std::ostream* out) { *out << refusal.name; }
+void PrintTo(Refusal const& refusal, std::ostream* out) {
+    *out << refusal.name;
+}
 
 class OffRefusal : public testing::TestWithParam<Refusal> {};
 
 TEST_P(OffRefusal, NamesLineReasonAndRemedy) {
     std::string const message = RefusalOfText(GetParam().text);
     EXPECT_EQ(message.find(GetParam().where), 0u) << message;
-    for (std::string const& part : GetParam().says) EXPECT_NE(message.find(part), std::string::npos) << part << "\nnot in: " << message;
+    for (std::string const& part : GetParam().says)
+        EXPECT_NE(message.find(part), std::string::npos) << part << "\nnot in: " << message;
     EXPECT_LT(message.size(), 400u);
 }
 
@@ -113,25 +128,55 @@ std::string const kPoints = "0 0 0\n1 0 0\n0 1 0\n";
 
 INSTANTIATE_TEST_SUITE_P(
     Of, OffRefusal,
-    testing::Values(Refusal{"Empty", "", "mesh.off:", {"ends before the keyword OFF"}},
-                    Refusal{"WrongKeyword", "NOFF\n", "mesh.off:1: ", {"'NOFF'", "OFF or COFF is needed"}},
-                    Refusal{"Binary", "OFF BINARY\n", "mesh.off:1: ", {"'BINARY'"}},
-                    Refusal{"NoCounts", "OFF\n", "mesh.off:1: ", {"ends before the counts"}},
-                    Refusal{"OneCount", "OFF\n3\n", "mesh.off:2: ", {"number of faces is missing"}},
-                    Refusal{"NegativeCount", "OFF\n-3 1 0\n", "mesh.off:2: ", {"number of vertices is -3", "0 to"}},
-                    Refusal{"CountWithAFraction", "OFF\n3.5 1 0\n", "mesh.off:2: ", {"3.5"}},
-                    Refusal{"CountBeyond32Bits", "OFF\n3 99999999999 0\n", "mesh.off:2: ", {"number of faces"}},
-                    Refusal{"NoFaces", "OFF\n3 0 0\n" + kPoints, "mesh.off:2: ", {"no faces"}},
-                    Refusal{"HugeCount", "OFF\n500000000 1 0\n" + kPoints + "3 0 1 2\n", "mesh.off:2: ", {"too short for 500000000"}},
-                    Refusal{"MissingFace", "OFF\n3 2 0\n" + kPoints + "3 0 1 2\n", "mesh.off:6: ", {"ends before face 1 of 2"}},
-                    Refusal{"NotANumber", "OFF\n3 1 0\n0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n", "mesh.off:4: ", {"y is 'x'"}},
-                    Refusal{"Nan", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 nan\n3 0 1 2\n", "mesh.off:5: ", {"z is 'nan'", "finite"}},
-                    Refusal{"Infinity", "OFF\n3 1 0\ninf 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "mesh.off:3: ", {"x is 'inf'"}},
-                    Refusal{"IndexTooLarge", "OFF\n3 1 0\n" + kPoints + "3 0 1 3\n", "mesh.off:6: ", {"vertex 3", "0 to 2"}},
-                    Refusal{"NegativeIndex", "OFF\n3 1 0\n" + kPoints + "3 0 1 -1\n", "mesh.off:6: ", {"vertex -1", "0 to 2"}},
-                    Refusal{"TwoCorners", "OFF\n3 1 0\n" + kPoints + "2 0 1\n", "mesh.off:6: ", {"2 corners", "at least 3"}},
-                    Refusal{"MissingCorner", "OFF\n3 1 0\n" + kPoints + "4 0 1 2\n", "mesh.off:6: ", {"missing"}},
-                    Refusal{"HugeFace", "OFF\n3 1 0\n" + kPoints + "500000000 0 1 2\n", "mesh.off:6: ", {"missing"}}),
+    testing::Values(
+        Refusal{"Empty", "", "mesh.off:", {"ends before the keyword OFF"}},
+        Refusal{"WrongKeyword", "NOFF\n", "mesh.off:1: ", {"'NOFF'", "OFF or COFF is needed"}},
+        Refusal{"Binary", "OFF BINARY\n", "mesh.off:1: ", {"'BINARY'"}},
+        Refusal{"NoCounts", "OFF\n", "mesh.off:1: ", {"ends before the counts"}},
+        Refusal{"OneCount", "OFF\n3\n", "mesh.off:2: ", {"number of faces is missing"}},
+        Refusal{
+            "NegativeCount", "OFF\n-3 1 0\n", "mesh.off:2: ", {"number of vertices is -3", "0 to"}},
+        Refusal{"CountWithAFraction", "OFF\n3.5 1 0\n", "mesh.off:2: ", {"3.5"}},
+        Refusal{"CountBeyond32Bits", "OFF\n3 99999999999 0\n", "mesh.off:2: ", {"number of faces"}},
+        Refusal{"NoFaces", "OFF\n3 0 0\n" + kPoints, "mesh.off:2: ", {"no faces"}},
+        Refusal{"HugeCount",
+                "OFF\n500000000 1 0\n" + kPoints + "3 0 1 2\n",
+                "mesh.off:2: ",
+                {"too short for 500000000"}},
+        Refusal{"MissingFace",
+                "OFF\n3 2 0\n" + kPoints + "3 0 1 2\n",
+                "mesh.off:6: ",
+                {"ends before face 1 of 2"}},
+        Refusal{"NotANumber",
+                "OFF\n3 1 0\n0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n",
+                "mesh.off:4: ",
+                {"y is 'x'"}},
+        Refusal{"Nan",
+                "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 nan\n3 0 1 2\n",
+                "mesh.off:5: ",
+                {"z is 'nan'", "finite"}},
+        Refusal{"Infinity",
+                "OFF\n3 1 0\ninf 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+                "mesh.off:3: ",
+                {"x is 'inf'"}},
+        Refusal{"IndexTooLarge",
+                "OFF\n3 1 0\n" + kPoints + "3 0 1 3\n",
+                "mesh.off:6: ",
+                {"vertex 3", "0 to 2"}},
+        Refusal{"NegativeIndex",
+                "OFF\n3 1 0\n" + kPoints + "3 0 1 -1\n",
+                "mesh.off:6: ",
+                {"vertex -1", "0 to 2"}},
+        Refusal{"TwoCorners",
+                "OFF\n3 1 0\n" + kPoints + "2 0 1\n",
+                "mesh.off:6: ",
+                {"2 corners", "at least 3"}},
+        Refusal{
+            "MissingCorner", "OFF\n3 1 0\n" + kPoints + "4 0 1 2\n", "mesh.off:6: ", {"missing"}},
+        Refusal{"HugeFace",
+                "OFF\n3 1 0\n" + kPoints + "500000000 0 1 2\n",
+                "mesh.off:6: ",
+                {"missing"}}),
     [](testing::TestParamInfo<Refusal> const& instance) { return instance.param.name; });
 
 TEST(OffReader, HugeCountsTakeNoMemory) {

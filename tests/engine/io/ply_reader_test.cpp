@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/io/ply_reader.h"
 
 #include <algorithm>
@@ -49,29 +50,43 @@ private:
     std::string _text;
 };
 
-char const* FormatName(bool isBig) { return isBig ? "binary_big_endian" : "binary_little_endian"; }
+char const* FormatName(bool isBig) {
+    return isBig ? "binary_big_endian" : "binary_little_endian";
+}
 
 std::string const kTriangle =
-    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+    "z\n"
+    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 "
+    "1 2\n";
 
 /// A triangle with every type a property can have, and its header.
 std::string MakeTyped(bool isBig) {
     Bytes body(isBig);
     for (int v = 0; v < 3; ++v) {
         body.Add(1.25 * v).Add(0.1f * static_cast<float>(v)).Add(static_cast<int16_t>(-7 * v));
-        body.Add(static_cast<uint8_t>(51 * v)).Add(static_cast<uint8_t>(255)).Add(static_cast<uint8_t>(0));
-        body.Add(static_cast<int8_t>(-v)).Add(static_cast<uint16_t>(65535 - v)).Add(static_cast<int32_t>(-100000 * v));
+        body.Add(static_cast<uint8_t>(51 * v))
+            .Add(static_cast<uint8_t>(255))
+            .Add(static_cast<uint8_t>(0));
+        body.Add(static_cast<int8_t>(-v))
+            .Add(static_cast<uint16_t>(65535 - v))
+            .Add(static_cast<int32_t>(-100000 * v));
         body.Add(4000000000u + static_cast<uint32_t>(v));
     }
-    body.Add(static_cast<uint8_t>(3)).Add(static_cast<int32_t>(2)).Add(static_cast<int32_t>(1)).Add(static_cast<int32_t>(0));
+    body.Add(static_cast<uint8_t>(3))
+        .Add(static_cast<int32_t>(2))
+        .Add(static_cast<int32_t>(1))
+        .Add(static_cast<int32_t>(0));
     body.Add(static_cast<uint16_t>(6));
     for (float x : {0.0f, 0.5f, 1.0f, 0.25f, 0.75f, 0.125f}) body.Add(x);
     return fmt::format(
                "ply\nformat {} 1.0\ncomment made by a test\nobj_info nothing\nelement vertex 3\n"
-               "property double x\nproperty float32 y\nproperty short z\nproperty uchar red\nproperty uchar green\n"
-               "property uint8 blue\nproperty char a\nproperty ushort b\nproperty int c\nproperty uint d\n"
-               "element face 1\nproperty list uchar int vertex_index\nproperty list ushort float texcoord\nend_header\n",
+               "property double x\nproperty float32 y\nproperty short z\nproperty uchar "
+               "red\nproperty uchar green\n"
+               "property uint8 blue\nproperty char a\nproperty ushort b\nproperty int c\nproperty "
+               "uint d\n"
+               "element face 1\nproperty list uchar int vertex_index\nproperty list ushort float "
+               "texcoord\nend_header\n",
                FormatName(isBig)) +
            body.GetText();
 }
@@ -140,28 +155,35 @@ TEST_P(PlyByteOrder, FileCutAnywhereIsRefused) {
     std::string const whole = MakeTyped(GetParam());
     for (size_t size = 0; size < whole.size(); ++size) {
         std::string const message = RefusalOfBytes(whole.substr(0, size));
-        ASSERT_EQ(message.find("mesh.ply:"), 0u) << size << " of " << whole.size() << " bytes: " << message;
+        ASSERT_EQ(message.find("mesh.ply:"), 0u)
+            << size << " of " << whole.size() << " bytes: " << message;
     }
 }
 
 TEST_P(PlyByteOrder, NanInAPositionIsRefusedAndItsVertexNamed) {
     Bytes body(GetParam());
-    for (float x : {0.0f, 0.0f, 0.0f, 1.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f, 0.0f, 1.0f, 0.0f}) body.Add(x);
+    for (float x :
+         {0.0f, 0.0f, 0.0f, 1.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f, 0.0f, 1.0f, 0.0f})
+        body.Add(x);
     body.Add(static_cast<uint8_t>(3)).Add(0).Add(1).Add(2);
     std::string header = kTriangle.substr(0, kTriangle.find("end_header\n") + 11);
     header.replace(header.find("ascii"), 5, FormatName(GetParam()));
     std::string const message = RefusalOfBytes(header + body.GetText());
     EXPECT_EQ(message.find("mesh.ply: vertex 1: "), 0u) << message;
-    EXPECT_NE(message.find("'y' is nan; a number up to 1e+30 is needed"), std::string::npos) << message;
+    EXPECT_NE(message.find("'y' is nan; a number up to 1e+30 is needed"), std::string::npos)
+        << message;
 }
 
 INSTANTIATE_TEST_SUITE_P(Order, PlyByteOrder, testing::Bool(),
-                         [](testing::TestParamInfo<bool> const& instance) { return instance.param ? "Big" : "Little"; });
+                         [](testing::TestParamInfo<bool> const& instance) {
+                             return instance.param ? "Big" : "Little";
+                         });
 
 TEST(PlyReader, VertexTextureCoordinatesGoByThreeNames) {
     for (auto const& [u, v] : {std::pair{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}}) {
         std::string text = kTriangle;
-        text.replace(text.find("element face"), 0, fmt::format("property float {}\nproperty float {}\n", u, v));
+        text.replace(text.find("element face"), 0,
+                     fmt::format("property float {}\nproperty float {}\n", u, v));
         text.replace(text.find("0 0 0\n"), 18, "0 0 0 .25 .5\n1 0 0 1 0\n0 1 0 0 1\n");
         Scene const scene = Parse(text);
         EXPECT_EQ(scene.uvs, (std::vector<double>{0.25, 0.5, 1, 0, 0, 1})) << u;
@@ -172,13 +194,17 @@ TEST(PlyReader, VertexTextureCoordinatesGoByThreeNames) {
 
 /// Two triangles that share an edge, with the given texcoord lists.
 std::string MakePair(std::string const& first, std::string const& second) {
-    return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-           "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n"
-           "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 " + first + "\n3 0 2 3 " + second + "\n";
+    return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
+           "float z\n"
+           "element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float "
+           "texcoord\nend_header\n"
+           "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 " +
+           first + "\n3 0 2 3 " + second + "\n";
 }
 
 TEST(PlyReader, CornersOfOneVertexShareAUVOnlyWhereItIsTheSame) {
-    // Vertex 0 has (0,0) in both faces, vertex 2 has (1,1) in one and (.5,.5) in the other: 5 values.
+    // Vertex 0 has (0,0) in both faces, vertex 2 has (1,1) in one and (.5,.5) in the other: 5
+    // values.
     Scene const scene = Parse(MakePair("6 0 0 1 0 1 1", "6 0 0 .5 .5 0 1"));
     auto const& channel = scene.cage.fvarChannels.at(0);
     EXPECT_EQ(channel.numValues, 5);
@@ -194,7 +220,9 @@ TEST(PlyReader, FacesWithoutTexcoordsTakeTheUVsAwayAndAWarningSaysSo) {
 
 TEST(PlyReader, FurtherScalarsArePrimvarsAndNormalsAreNot) {
     std::string text = kTriangle;
-    text.replace(text.find("element face"), 0, "property float nx\nproperty float ny\nproperty float nz\nproperty float quality\n");
+    text.replace(
+        text.find("element face"), 0,
+        "property float nx\nproperty float ny\nproperty float nz\nproperty float quality\n");
     text.replace(text.find("0 0 0\n"), 18, "0 0 0 0 0 1 .5\n1 0 0 0 0 1 -2\n0 1 0 0 0 1 3e4\n");
     Scene const scene = Parse(text);
     ASSERT_EQ(scene.primvars.size(), 1u);
@@ -204,17 +232,22 @@ TEST(PlyReader, FurtherScalarsArePrimvarsAndNormalsAreNot) {
 
 TEST(PlyReader, AlphaMakesColoursFourChannels) {
     std::string text = kTriangle;
-    text.replace(text.find("element face"), 0, "property float red\nproperty float green\nproperty float blue\nproperty float alpha\n");
+    text.replace(
+        text.find("element face"), 0,
+        "property float red\nproperty float green\nproperty float blue\nproperty float alpha\n");
     text.replace(text.find("0 0 0\n"), 18, "0 0 0 1 2 3 4\n1 0 0 5 6 7 8\n0 1 0 .5 .25 0 1\n");
     Scene const scene = Parse(text);
     ASSERT_EQ(scene.primvars.size(), 1u);
     EXPECT_EQ(scene.primvars[0].numChannels, 4);
-    EXPECT_EQ(scene.primvars[0].values, (std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 0.5f, 0.25f, 0, 1}));
+    EXPECT_EQ(scene.primvars[0].values,
+              (std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 0.5f, 0.25f, 0, 1}));
 }
 
 TEST(PlyReader, ScalarNamedColorDoesNotMixWithColours) {
     std::string text = kTriangle;
-    text.replace(text.find("element face"), 0, "property float color\nproperty float red\nproperty float green\nproperty float blue\n");
+    text.replace(
+        text.find("element face"), 0,
+        "property float color\nproperty float red\nproperty float green\nproperty float blue\n");
     text.replace(text.find("0 0 0\n"), 18, "0 0 0 9 1 2 3\n1 0 0 9 4 5 6\n0 1 0 9 7 8 10\n");
     Scene scene;
     try {
@@ -224,7 +257,8 @@ TEST(PlyReader, ScalarNamedColorDoesNotMixWithColours) {
     }
     size_t numValues = 0;
     for (auto const& primvar : scene.primvars) {
-        EXPECT_EQ(primvar.values.size(), 3u * static_cast<size_t>(primvar.numChannels)) << primvar.name;
+        EXPECT_EQ(primvar.values.size(), 3u * static_cast<size_t>(primvar.numChannels))
+            << primvar.name;
         numValues += primvar.values.size();
     }
     EXPECT_EQ(numValues, 12u);  // one scalar and three colours at 3 vertices
@@ -232,7 +266,8 @@ TEST(PlyReader, ScalarNamedColorDoesNotMixWithColours) {
 
 TEST(PlyReader, ElementsItDoesNotKnowAreSkipped) {
     std::string text = kTriangle;
-    text.replace(text.find("element face"), 0, "element camera 2\nproperty float f\nproperty list uchar int ids\n");
+    text.replace(text.find("element face"), 0,
+                 "element camera 2\nproperty float f\nproperty list uchar int ids\n");
     text.replace(text.find("3 0 1 2\n"), 0, "1.5 2 7 7\n2.5 0\n");
     EXPECT_EQ(Parse(text).cage.faceVertices, (std::vector<Index>{0, 1, 2}));
 }
@@ -253,9 +288,12 @@ TEST(PlyReader, NumbersDoNotDependOnTheLocale) {
 
 TEST(PlyReader, TwoIndexListsAreRefusedOrRead) {
     std::string const text =
-        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-        "element face 1\nproperty list uchar int vertex_indices\nproperty list uchar int vertex_index\n"
-        "property list uchar float texcoord\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 3 0 1 2 6 0 0 1 0 0 1\n";
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty "
+        "float z\n"
+        "element face 1\nproperty list uchar int vertex_indices\nproperty list uchar int "
+        "vertex_index\n"
+        "property list uchar float texcoord\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 3 0 1 2 6 0 "
+        "0 1 0 0 1\n";
     try {
         Scene const scene = Parse(text);
         EXPECT_EQ(scene.cage.faceVertices.size(), 3u);
@@ -270,7 +308,9 @@ struct Refusal {
     std::vector<std::string> says;
 };
 
-void PrintTo(Refusal const& refusal, std::ostream* out) { *out << refusal.name; }
+void PrintTo(Refusal const& refusal, std::ostream* out) {
+    *out << refusal.name;
+}
 
 class PlyRefusal : public testing::TestWithParam<Refusal> {};
 
@@ -281,7 +321,8 @@ TEST_P(PlyRefusal, NamesLineReasonAndRemedy) {
     text.replace(at, GetParam().from.size(), GetParam().to);
     std::string const message = RefusalOfBytes(text);
     EXPECT_EQ(message.find("mesh.ply:" + GetParam().where), 0u) << message;
-    for (std::string const& part : GetParam().says) EXPECT_NE(message.find(part), std::string::npos) << part << "\nnot in: " << message;
+    for (std::string const& part : GetParam().says)
+        EXPECT_NE(message.find(part), std::string::npos) << part << "\nnot in: " << message;
     EXPECT_LT(message.size(), 400u) << "a message is one line that can be read";
 }
 
@@ -289,12 +330,22 @@ INSTANTIATE_TEST_SUITE_P(
     Of, PlyRefusal,
     testing::Values(
         Refusal{"WrongMagic", "ply\n", "plyx\n", "1: ", {"does not start with 'ply'"}},
-        Refusal{"UnknownFormat", "format ascii", "format utf8", "2: ", {"'utf8'", "binary_big_endian"}},
+        Refusal{
+            "UnknownFormat", "format ascii", "format utf8", "2: ", {"'utf8'", "binary_big_endian"}},
         Refusal{"NoFormat", "format ascii 1.0\n", "", "", {"no 'format' line"}},
-        Refusal{"NoEndOfHeader", "end_header", "comment", "10: ", {"'0' has no place in a PLY header"}},
-        Refusal{"OnlyAHeader", kTriangle.substr(kTriangle.find("end_header")), "", "8: ", {"no 'end_header'"}},
+        Refusal{
+            "NoEndOfHeader", "end_header", "comment", "10: ", {"'0' has no place in a PLY header"}},
+        Refusal{"OnlyAHeader",
+                kTriangle.substr(kTriangle.find("end_header")),
+                "",
+                "8: ",
+                {"no 'end_header'"}},
         Refusal{"UnknownType", "float x", "quad x", "4: ", {"'quad'"}},
-        Refusal{"PropertyBeforeElements", "element vertex 3\n", "", "3: ", {"before the first element"}},
+        Refusal{"PropertyBeforeElements",
+                "element vertex 3\n",
+                "",
+                "3: ",
+                {"before the first element"}},
         Refusal{"NoZ", "property float z\n", "", "", {"lacks x, y or z"}},
         Refusal{"NoIndices", "vertex_indices", "indices", "", {"vertex_indices"}},
         Refusal{"CountThatIsAWord", "vertex 3", "vertex many", "3: ", {"'many'"}},
@@ -303,7 +354,11 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"CountBeyond32Bits", "vertex 3", "vertex 99999999999", "3: ", {"99999999999"}},
         Refusal{"NoFaces", "face 1", "face 0", "", {"no faces"}},
         Refusal{"TextTooShort", "face 1", "face 2", "13: ", {"ends before face 1 of 2"}},
-        Refusal{"NotANumber", "1 0 0\n", "1 zero 0\n", "11: ", {"y is 'zero'", "finite number is needed"}},
+        Refusal{"NotANumber",
+                "1 0 0\n",
+                "1 zero 0\n",
+                "11: ",
+                {"y is 'zero'", "finite number is needed"}},
         Refusal{"Nan", "1 0 0\n", "1 0 nan\n", "11: ", {"z is 'nan'"}},
         Refusal{"Infinity", "1 0 0\n", "-inf 0 0\n", "11: ", {"x is '-inf'"}},
         Refusal{"MissingNumber", "1 0 0\n", "1 0\n", "11: ", {"z is missing"}},
@@ -321,7 +376,8 @@ TEST(PlyReader, TexcoordListOfTheWrongLengthIsRefused) {
 }
 
 TEST(PlyReader, NanInATexcoordIsRefused) {
-    EXPECT_EQ(RefusalOfBytes(MakePair("6 0 0 1 nan 1 1", "6 0 0 1 1 0 1")).find("mesh.ply:15: "), 0u);
+    EXPECT_EQ(RefusalOfBytes(MakePair("6 0 0 1 nan 1 1", "6 0 0 1 1 0 1")).find("mesh.ply:15: "),
+              0u);
 }
 
 /// Peak memory of this process so far, bytes.
@@ -352,10 +408,12 @@ TEST(PlyReader, HugeCountsInTheHeaderAreRefusedWithoutRoomForThem) {
 
 TEST(PlyReader, ManyPropertiesOfManyVerticesAreRefusedWithoutRoomForThem) {
     // 1000 properties of 100 000 vertices would take 100 MB in the file; it has 200 kB.
-    std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex 100000\n"
-                       "property float x\nproperty float y\nproperty float z\n";
+    std::string text =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 100000\n"
+        "property float x\nproperty float y\nproperty float z\n";
     for (int i = 0; i < 1000; ++i) text += fmt::format("property char p{}\n", i);
-    text += "element face 1\nproperty list uchar int vertex_indices\nend_header\n" + std::string(200000, '\0');
+    text += "element face 1\nproperty list uchar int vertex_indices\nend_header\n" +
+            std::string(200000, '\0');
     size_t const before = PeakMemory();
     EXPECT_NE(RefusalOfBytes(text), "");
     EXPECT_LT(PeakMemory() - before, kModest);
@@ -377,7 +435,8 @@ TEST(PlyReader, HugeListInABinaryFileIsRefusedWithoutRoomForIt) {
 // -------- hostile bytes
 
 TEST(PlyReader, DamagedFilesAreReadOrRefusedButNeverMore) {
-    for (std::string const& whole : {kTriangle, MakeTyped(false), MakeTyped(true), MakePair("6 0 0 1 0 1 1", "6 0 0 1 1 0 1")}) {
+    for (std::string const& whole : {kTriangle, MakeTyped(false), MakeTyped(true),
+                                     MakePair("6 0 0 1 0 1 1", "6 0 0 1 1 0 1")}) {
         for (unsigned seed = 0; seed < 1000; ++seed) {
             try {
                 far_ext::Validate(Parse(test::Damage(whole, seed)).cage);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/measure/measure.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,8 @@ namespace {
 using engine::MeasuredSurface;
 double const kPi = std::acos(-1.0);
 
-engine::Measurement MeasureScene(engine::Scene const& scene, MeasuredSurface surface, double orientation = 1.0) {
+engine::Measurement MeasureScene(engine::Scene const& scene, MeasuredSurface surface,
+                                 double orientation = 1.0) {
     auto const refiner = far_ext::CreateRefiner(scene.cage);
     return engine::Measure(scene, *refiner, surface, orientation);
 }
@@ -36,14 +38,17 @@ TEST(Measure, ACubeHasItsAreaAndVolume) {
 TEST(Measure, ATorusHasItsClosedForms) {
     auto scene = test::MakeTorus(64, 40);
     for (size_t v = 0; v < scene.positions.size() / 3; ++v) {
-        double const a = 2.0 * kPi * static_cast<double>(v / 40) / 64, b = 2.0 * kPi * static_cast<double>(v % 40) / 40;
-        double const p[] = {(1 + 0.4 * std::cos(b)) * std::cos(a), (1 + 0.4 * std::cos(b)) * std::sin(a), 0.4 * std::sin(b)};
+        double const a = 2.0 * kPi * static_cast<double>(v / 40) / 64,
+                     b = 2.0 * kPi * static_cast<double>(v % 40) / 40;
+        double const p[] = {(1 + 0.4 * std::cos(b)) * std::cos(a),
+                            (1 + 0.4 * std::cos(b)) * std::sin(a), 0.4 * std::sin(b)};
         for (size_t c = 0; c < 3; ++c) scene.positions[3 * v + c] = p[c];
     }
     for (MeasuredSurface surface : {MeasuredSurface::Limit, MeasuredSurface::Mesh}) {
         auto const found = MeasureScene(scene, surface);
         EXPECT_NEAR(found.area, 4.0 * kPi * kPi * 0.4, 0.01 * found.area);
-        EXPECT_NEAR(std::abs(*found.volume), 2.0 * kPi * kPi * 0.16, 0.015 * std::abs(*found.volume));
+        EXPECT_NEAR(std::abs(*found.volume), 2.0 * kPi * kPi * 0.16,
+                    0.015 * std::abs(*found.volume));
         EXPECT_NEAR(std::abs(found.mean.mean), 1.0 / 0.8, 0.01 / 0.8);
         EXPECT_NEAR(found.gaussian.mean, 0.0, 0.02);
         EXPECT_LE(found.gaussian.min, found.gaussian.max);
@@ -53,7 +58,8 @@ TEST(Measure, ATorusHasItsClosedForms) {
     }
 }
 
-// Curvature is unbounded at valence 5 and more; pieces that get smaller towards it still give 2 pi chi.
+// Curvature is unbounded at valence 5 and more; pieces that get smaller towards it still give 2 pi
+// chi.
 TEST(Measure, GaussBonnetHoldsAtEveryValence) {
     for (int n : {3, 4, 5, 7, 9, 12}) {
         auto const found = MeasureScene(test::MakeBipyramid(n), MeasuredSurface::Limit);
@@ -64,14 +70,16 @@ TEST(Measure, GaussBonnetHoldsAtEveryValence) {
     EXPECT_LT(cube.gaussBonnet[0].relativeError, 1e-3);
 }
 
-// Components are numbered by their lowest face, and only the closed ones have something to be compared with.
+// Components are numbered by their lowest face, and only the closed ones have something to be
+// compared with.
 TEST(Measure, ComponentsAreToldApart) {
     auto scene = test::MakeFan(6, Sdc::SCHEME_LOOP, 0.2, 0.0);
     auto const closed = test::MakeBipyramid(6);
     Index const first = scene.cage.numVertices;
     scene.positions.insert(scene.positions.end(), closed.positions.begin(), closed.positions.end());
     for (Index v : closed.cage.faceVertices) scene.cage.faceVertices.push_back(v + first);
-    scene.cage.faceSizes.insert(scene.cage.faceSizes.end(), closed.cage.faceSizes.begin(), closed.cage.faceSizes.end());
+    scene.cage.faceSizes.insert(scene.cage.faceSizes.end(), closed.cage.faceSizes.begin(),
+                                closed.cage.faceSizes.end());
     scene.cage.numVertices += closed.cage.numVertices;
     auto const found = MeasureScene(scene, MeasuredSurface::Limit);
     ASSERT_EQ(found.gaussBonnet.size(), 2u);
@@ -89,7 +97,8 @@ TEST(Measure, VerticesGetTheirCurvature) {
         ASSERT_EQ(curved.primvars.size(), 4u);
         for (size_t v = 0; v < curved.primvars[0].values.size(); ++v) {
             float const k1 = curved.primvars[2].values[v], k2 = curved.primvars[3].values[v];
-            EXPECT_NEAR(curved.primvars[0].values[v], 0.5f * (k1 + k2), 1e-5f * (1.0f + std::abs(k1) + std::abs(k2)));
+            EXPECT_NEAR(curved.primvars[0].values[v], 0.5f * (k1 + k2),
+                        1e-5f * (1.0f + std::abs(k1) + std::abs(k2)));
             EXPECT_NEAR(curved.primvars[1].values[v], k1 * k2, 1e-4f * (1.0f + std::abs(k1 * k2)));
         }
     }
@@ -97,7 +106,8 @@ TEST(Measure, VerticesGetTheirCurvature) {
 
 // The pieces are all of a domain.
 TEST(GradedPoints, WeightsAddUpToTheDomain) {
-    for (auto const& [scene, area] : {std::pair{test::MakeCube(), 1.0}, {test::MakeBipyramid(7), 0.5}}) {
+    for (auto const& [scene, area] :
+         {std::pair{test::MakeCube(), 1.0}, {test::MakeBipyramid(7), 0.5}}) {
         auto const refiner = far_ext::CreateRefiner(scene.cage);
         eval::LimitSurface const surface(*refiner);
         eval::GradedPoints const points(surface);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <random>
 
@@ -59,12 +60,15 @@ TEST(GradientNoise, HasTheSameBitsEverywhere) {
 
 TEST(GradientNoise, TakesAnyNumber) {
     double const infinite = std::numeric_limits<double>::infinity();
-    for (double x : {1e300, -1e18, infinite, std::nan("")}) EXPECT_EQ(GradientNoise(0, x, 0.5, 0.5), 0.0) << x;
+    for (double x : {1e300, -1e18, infinite, std::nan("")})
+        EXPECT_EQ(GradientNoise(0, x, 0.5, 0.5), 0.0) << x;
 }
 
-// The spline goes through every colour, and between two equal neighbours of a constant ramp stays there.
+// The spline goes through every colour, and between two equal neighbours of a constant ramp stays
+// there.
 TEST(ColourRamp, InterpolatesItsColours) {
-    std::vector<ColourRamp::Colour> const colours{{0, 0, 0}, {1, 0, 0.5}, {0.2, 0.9, 1}, {1, 1, 1}, {0.3, 0.1, 0}};
+    std::vector<ColourRamp::Colour> const colours{
+        {0, 0, 0}, {1, 0, 0.5}, {0.2, 0.9, 1}, {1, 1, 1}, {0.3, 0.1, 0}};
     ColourRamp const ramp(colours);
     for (size_t i = 0; i < colours.size(); ++i) {
         auto const colour = ramp.Evaluate(static_cast<double>(i) / 4.0);
@@ -78,15 +82,17 @@ TEST(ColourRamp, InterpolatesItsColours) {
 
 TEST(ColourRamp, ReadsHexadecimalColoursAndNamesOthers) {
     EXPECT_EQ(ColourRamp::Parse("#000000,#FF8000").GetText(), "#000000,#ff8000");
-    for (char const* text : {"", "#000000", "#000000,red", "#00000,#ffffff", "#000000,#fffffg", "#000000,"}) {
+    for (char const* text :
+         {"", "#000000", "#000000,red", "#00000,#ffffff", "#000000,#fffffg", "#000000,"}) {
         EXPECT_THROW(ColourRamp::Parse(text), Error) << text;
     }
 }
 
 class SurfaceNoiseOf : public testing::TestWithParam<char const*> {};
 INSTANTIATE_TEST_SUITE_P(Cages, SurfaceNoiseOf,
-                         testing::Values("catmark_cube.obj", "catmark_nonquads.obj", "catmark_torus.obj",
-                                         "catmark_edgeonly.obj", "catmark_dart_edgecorner.obj", "loop_icosahedron.obj",
+                         testing::Values("catmark_cube.obj", "catmark_nonquads.obj",
+                                         "catmark_torus.obj", "catmark_edgeonly.obj",
+                                         "catmark_dart_edgecorner.obj", "loop_icosahedron.obj",
                                          "loop_saddle_edgecorner.obj"),
                          [](auto const& mesh) {
                              std::string const name = mesh.param;
@@ -94,15 +100,16 @@ INSTANTIATE_TEST_SUITE_P(Cages, SurfaceNoiseOf,
                          });
 
 /// Noise at a corner of a face.
-double AtCorner(engine::SurfaceNoise::Sampler& noise, eval::LimitSurface const& surface, Index face, int corner) {
+double AtCorner(engine::SurfaceNoise::Sampler& noise, eval::LimitSurface const& surface, Index face,
+                int corner) {
     auto const place = eval::GetCornerPlace(surface, face, corner);
     double value = 0.0;
     noise.Evaluate(face, place.domain, {&place.s, 1}, {&place.t, 1}, {&value, 1});
     return value;
 }
 
-// No seam: every face round a vertex has the same noise there, for any number of octaves; and the least and
-// largest value named are met.
+// No seam: every face round a vertex has the same noise there, for any number of octaves; and the
+// least and largest value named are met.
 TEST_P(SurfaceNoiseOf, FacesAgreeAtTheirCorners) {
     engine::Scene const scene = test::LoadData(std::string("opensubdiv_shapes/") + GetParam());
     auto const refiner = far_ext::CreateRefiner(scene.cage);
@@ -125,8 +132,8 @@ TEST_P(SurfaceNoiseOf, FacesAgreeAtTheirCorners) {
     }
 }
 
-// One octave: the surface passes through the noise at every vertex's limit point, which the exact evaluator
-// finds. (Not on a cube, whose A is singular.)
+// One octave: the surface passes through the noise at every vertex's limit point, which the exact
+// evaluator finds. (Not on a cube, whose A is singular.)
 TEST_P(SurfaceNoiseOf, OneOctavePassesThroughTheNoise) {
     if (GetParam() == std::string("catmark_cube.obj")) GTEST_SKIP() << "A is singular on a cube";
     engine::Scene const scene = test::LoadData(std::string("opensubdiv_shapes/") + GetParam());
@@ -142,8 +149,11 @@ TEST_P(SurfaceNoiseOf, OneOctavePassesThroughTheNoise) {
         auto const place = eval::GetCornerPlace(surface, face, corner);
         tree.Bind(face);
         double x[3];
-        for (int c = 0; c < 3; ++c) x[c] = 1.3 * eval::EvaluateChannel(tree, place.domain, place.s, place.t, c);
-        EXPECT_NEAR(AtCorner(sampler, surface, face, corner), GradientNoise(9, x[0], x[1], x[2]), 1e-7) << vertex;
+        for (int c = 0; c < 3; ++c)
+            x[c] = 1.3 * eval::EvaluateChannel(tree, place.domain, place.s, place.t, c);
+        EXPECT_NEAR(AtCorner(sampler, surface, face, corner), GradientNoise(9, x[0], x[1], x[2]),
+                    1e-7)
+            << vertex;
     }
 }
 

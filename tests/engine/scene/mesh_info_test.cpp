@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/scene/mesh_info.h"
 
 #include <cmath>
@@ -42,7 +43,9 @@ struct Facts {
     size_t flippedFaces, zeroAreaFaces;
 };
 
-void PrintTo(Facts const& facts, std::ostream* out) { *out << facts.path; }
+void PrintTo(Facts const& facts, std::ostream* out) {
+    *out << facts.path;
+}
 
 std::string NameOf(testing::TestParamInfo<Facts> const& info) {
     std::string name = std::filesystem::path(info.param.path).stem().string();
@@ -74,72 +77,75 @@ TEST_P(InfoOfShape, AgreesWithTheTable) {
     ExpectFacts(Describe(test::LoadData("opensubdiv_shapes/" + GetParam().path)), GetParam());
 }
 
-// catmark_nonman_edges and loop_nonman_edges are left out: how many edges a face with repeated corners
-// has is a matter of taste.
-INSTANTIATE_TEST_SUITE_P(OpenSubdiv, InfoOfShape, testing::ValuesIn(std::vector<Facts>{
-    // path, vertices, faces, components, loops, genus, valence from, to, UVs, flipped, zero area
-    {"bilinear_cube.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
-    {"bilinear_nonquads0.obj", 8, 2, 2, 2, 0, 2, 2, true, 0, 0},
-    {"catmark_bishop.obj", 917, 968, 2, 1, 0, 3, 24, true, 0, 0},
-    {"catmark_car.obj", 1642, 1575, 31, 11, 7, 2, 6, true, 0, 0},
-    {"catmark_chaikin0.obj", 24, 22, 1, 0, 0, 3, 4, true, 0, 22},
-    {"catmark_cube.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
-    {"catmark_cube_corner0.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
-    {"catmark_cube_corner2.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
-    {"catmark_cube_corner4.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
-    {"catmark_cube_creases0.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
-    {"catmark_cube_creases2.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
-    {"catmark_cubes_semisharp.obj", 32, 24, 4, 0, 0, 3, 3, true, 0, 0},
-    {"catmark_dart_edgecorner.obj", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
-    {"catmark_dart_edgeonly.obj", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
-    {"catmark_edgecorner.obj", 52, 28, 4, 4, 0, 2, 4, true, 0, 0},
-    {"catmark_edgenone.obj", 64, 36, 4, 4, 0, 2, 4, true, 0, 0},
-    {"catmark_edgeonly.obj", 40, 20, 4, 4, 0, 2, 4, true, 0, 0},
-    {"catmark_fan.obj", 22, 13, 1, 1, -1, 2, 6, true, 0, 0},
-    {"catmark_flap.obj", 8, 3, 1, 1, 0, 2, 3, true, 1, 0},
-    {"catmark_fvar_bound0.obj", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
-    {"catmark_fvar_bound2.obj", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
-    {"catmark_fvar_bound4.obj", 9, 4, 1, 1, 0, 2, 4, true, 0, 0},
-    {"catmark_gregory_test0.obj", 7, 3, 1, 1, 0, 2, 3, true, 0, 0},
-    {"catmark_gregory_test2.obj", 9, 4, 1, 1, 0, 2, 5, true, 0, 0},
-    {"catmark_gregory_test4.obj", 12, 8, 1, 1, -1, 3, 4, true, 0, 0},
-    {"catmark_gregory_test6.obj", 20, 13, 1, 1, 0, 2, 4, true, 0, 0},
-    {"catmark_helmet.obj", 72, 58, 1, 1, 0, 2, 4, true, 0, 0},
-    {"catmark_hole_test1.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
-    {"catmark_hole_test3.obj", 24, 16, 1, 1, 0, 2, 5, true, 0, 0},
-    {"catmark_inf_crease0.obj", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
-    {"catmark_lefthanded.obj", 436, 434, 1, 0, 0, 3, 5, true, 125, 184},
-    {"catmark_nonman_verts.obj", 49, 20, 4, 6, -1, 2, 8, true, 0, 0},
-    {"catmark_nonquads.obj", 33, 17, 4, 4, 0, 2, 4, true, 0, 0},
-    {"catmark_pole64.obj", 129, 128, 1, 1, 0, 3, 64, false, 0, 0},
-    {"catmark_pole8.obj", 17, 16, 1, 1, 0, 3, 8, false, 0, 0},
-    {"catmark_pyramid.obj", 5, 5, 1, 0, 0, 3, 4, true, 5, 0},
-    {"catmark_pyramid_creases0.obj", 5, 5, 1, 0, 0, 3, 4, true, 1, 0},
-    {"catmark_quadstrips.obj", 126, 52, 11, 11, 0, 2, 4, true, 0, 0},
-    {"catmark_righthanded.obj", 436, 434, 1, 0, 0, 3, 5, true, 125, 184},
-    {"catmark_smoothtris0.obj", 42, 80, 1, 0, 0, 5, 20, true, 0, 0},
-    {"catmark_square_hedit0.obj", 16, 9, 1, 1, 0, 2, 4, true, 0, 0},
-    {"catmark_tent.obj", 16, 9, 1, 1, 0, 2, 4, true, 0, 0},
-    {"catmark_tent_creases0.obj", 16, 9, 1, 1, 0, 2, 4, true, 0, 0},
-    {"catmark_toroidal_tet.obj", 20, 24, 1, 0, 3, 4, 6, true, 0, 0},
-    {"catmark_torus.obj", 32, 32, 1, 0, 1, 4, 4, true, 0, 0},
-    {"catmark_torus_creases0.obj", 32, 32, 1, 0, 1, 4, 4, true, 0, 0},
-    {"catmark_val2_interior.obj", 103, 56, 9, 8, 0, 2, 6, true, 0, 1},
-    {"catmark_xord_interior.obj", 151, 71, 9, 9, 0, 2, 12, true, 0, 0},
-    {"loop_chaikin0.obj", 24, 44, 1, 0, 0, 4, 6, true, 0, 44},
-    {"loop_cube.obj", 14, 24, 1, 0, 0, 4, 6, true, 0, 0},
-    {"loop_cube_creases0.obj", 8, 12, 1, 0, 0, 4, 5, true, 0, 0},
-    {"loop_cubes_semisharp.obj", 56, 96, 4, 0, 0, 4, 6, true, 0, 0},
-    {"loop_fvar_bound0.obj", 19, 24, 1, 1, 0, 3, 6, true, 0, 0},
-    {"loop_fvar_bound2.obj", 19, 24, 1, 1, 0, 3, 6, true, 0, 0},
-    {"loop_icosahedron.obj", 12, 20, 1, 0, 0, 5, 5, true, 0, 0},
-    {"loop_pole8.obj", 17, 24, 1, 1, 0, 4, 8, false, 0, 0},
-    {"loop_saddle_edgecorner.obj", 6, 4, 1, 1, 0, 2, 4, true, 0, 0},
-    {"loop_tetrahedron.obj", 4, 4, 1, 0, 0, 3, 3, true, 0, 0},
-    {"loop_toroidal_tet.obj", 32, 72, 1, 0, 3, 6, 8, true, 0, 0},
-    {"loop_triangle_edgeonly.obj", 36, 34, 4, 4, 0, 2, 6, true, 0, 0},
-    {"loop_val2_interior.obj", 15, 10, 3, 2, -1, 2, 6, true, 0, 0},
-    {"loop_xord_interior.obj", 78, 69, 9, 9, 0, 3, 12, true, 0, 0}}), [](auto const& instance) { return NameOf(instance); });
+// catmark_nonman_edges and loop_nonman_edges are left out: how many edges a face with repeated
+// corners has is a matter of taste.
+INSTANTIATE_TEST_SUITE_P(OpenSubdiv, InfoOfShape,
+                         testing::ValuesIn(std::vector<Facts>{
+                             // path, vertices, faces, components, loops, genus, valence from, to,
+                             // UVs, flipped, zero area
+                             {"bilinear_cube.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"bilinear_nonquads0.obj", 8, 2, 2, 2, 0, 2, 2, true, 0, 0},
+                             {"catmark_bishop.obj", 917, 968, 2, 1, 0, 3, 24, true, 0, 0},
+                             {"catmark_car.obj", 1642, 1575, 31, 11, 7, 2, 6, true, 0, 0},
+                             {"catmark_chaikin0.obj", 24, 22, 1, 0, 0, 3, 4, true, 0, 22},
+                             {"catmark_cube.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"catmark_cube_corner0.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"catmark_cube_corner2.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"catmark_cube_corner4.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"catmark_cube_creases0.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"catmark_cube_creases2.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"catmark_cubes_semisharp.obj", 32, 24, 4, 0, 0, 3, 3, true, 0, 0},
+                             {"catmark_dart_edgecorner.obj", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_dart_edgeonly.obj", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_edgecorner.obj", 52, 28, 4, 4, 0, 2, 4, true, 0, 0},
+                             {"catmark_edgenone.obj", 64, 36, 4, 4, 0, 2, 4, true, 0, 0},
+                             {"catmark_edgeonly.obj", 40, 20, 4, 4, 0, 2, 4, true, 0, 0},
+                             {"catmark_fan.obj", 22, 13, 1, 1, -1, 2, 6, true, 0, 0},
+                             {"catmark_flap.obj", 8, 3, 1, 1, 0, 2, 3, true, 1, 0},
+                             {"catmark_fvar_bound0.obj", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_fvar_bound2.obj", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_fvar_bound4.obj", 9, 4, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_gregory_test0.obj", 7, 3, 1, 1, 0, 2, 3, true, 0, 0},
+                             {"catmark_gregory_test2.obj", 9, 4, 1, 1, 0, 2, 5, true, 0, 0},
+                             {"catmark_gregory_test4.obj", 12, 8, 1, 1, -1, 3, 4, true, 0, 0},
+                             {"catmark_gregory_test6.obj", 20, 13, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_helmet.obj", 72, 58, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_hole_test1.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"catmark_hole_test3.obj", 24, 16, 1, 1, 0, 2, 5, true, 0, 0},
+                             {"catmark_inf_crease0.obj", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_lefthanded.obj", 436, 434, 1, 0, 0, 3, 5, true, 125, 184},
+                             {"catmark_nonman_verts.obj", 49, 20, 4, 6, -1, 2, 8, true, 0, 0},
+                             {"catmark_nonquads.obj", 33, 17, 4, 4, 0, 2, 4, true, 0, 0},
+                             {"catmark_pole64.obj", 129, 128, 1, 1, 0, 3, 64, false, 0, 0},
+                             {"catmark_pole8.obj", 17, 16, 1, 1, 0, 3, 8, false, 0, 0},
+                             {"catmark_pyramid.obj", 5, 5, 1, 0, 0, 3, 4, true, 5, 0},
+                             {"catmark_pyramid_creases0.obj", 5, 5, 1, 0, 0, 3, 4, true, 1, 0},
+                             {"catmark_quadstrips.obj", 126, 52, 11, 11, 0, 2, 4, true, 0, 0},
+                             {"catmark_righthanded.obj", 436, 434, 1, 0, 0, 3, 5, true, 125, 184},
+                             {"catmark_smoothtris0.obj", 42, 80, 1, 0, 0, 5, 20, true, 0, 0},
+                             {"catmark_square_hedit0.obj", 16, 9, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_tent.obj", 16, 9, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_tent_creases0.obj", 16, 9, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_toroidal_tet.obj", 20, 24, 1, 0, 3, 4, 6, true, 0, 0},
+                             {"catmark_torus.obj", 32, 32, 1, 0, 1, 4, 4, true, 0, 0},
+                             {"catmark_torus_creases0.obj", 32, 32, 1, 0, 1, 4, 4, true, 0, 0},
+                             {"catmark_val2_interior.obj", 103, 56, 9, 8, 0, 2, 6, true, 0, 1},
+                             {"catmark_xord_interior.obj", 151, 71, 9, 9, 0, 2, 12, true, 0, 0},
+                             {"loop_chaikin0.obj", 24, 44, 1, 0, 0, 4, 6, true, 0, 44},
+                             {"loop_cube.obj", 14, 24, 1, 0, 0, 4, 6, true, 0, 0},
+                             {"loop_cube_creases0.obj", 8, 12, 1, 0, 0, 4, 5, true, 0, 0},
+                             {"loop_cubes_semisharp.obj", 56, 96, 4, 0, 0, 4, 6, true, 0, 0},
+                             {"loop_fvar_bound0.obj", 19, 24, 1, 1, 0, 3, 6, true, 0, 0},
+                             {"loop_fvar_bound2.obj", 19, 24, 1, 1, 0, 3, 6, true, 0, 0},
+                             {"loop_icosahedron.obj", 12, 20, 1, 0, 0, 5, 5, true, 0, 0},
+                             {"loop_pole8.obj", 17, 24, 1, 1, 0, 4, 8, false, 0, 0},
+                             {"loop_saddle_edgecorner.obj", 6, 4, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"loop_tetrahedron.obj", 4, 4, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"loop_toroidal_tet.obj", 32, 72, 1, 0, 3, 6, 8, true, 0, 0},
+                             {"loop_triangle_edgeonly.obj", 36, 34, 4, 4, 0, 2, 6, true, 0, 0},
+                             {"loop_val2_interior.obj", 15, 10, 3, 2, -1, 2, 6, true, 0, 0},
+                             {"loop_xord_interior.obj", 78, 69, 9, 9, 0, 3, 12, true, 0, 0}}),
+                         [](auto const& instance) { return NameOf(instance); });
 
 class InfoOfAsset : public testing::TestWithParam<Facts> {};
 
@@ -148,53 +154,57 @@ TEST_P(InfoOfAsset, AgreesWithTheTable) {
     ExpectFacts(Describe(test::LoadAsset(GetParam().path)), GetParam());
 }
 
-INSTANTIATE_TEST_SUITE_P(Public, InfoOfAsset, testing::ValuesIn(std::vector<Facts>{
-    // path, vertices, faces, components, loops, genus, valence from, to, UVs, flipped, zero area
-    {"control/chess_knight.obj", 5596, 5592, 2, 0, 0, 3, 8, true, 0, 864},
-    {"control/chess_rook.obj", 15270, 15264, 5, 0, 2, 3, 12, true, 0, 0},
-    {"control/fancy_teapot.obj", 6072, 6120, 2, 0, 2, 3, 32, true, 0, 0},
-    {"control/ict_face_neutral.obj", 26719, 26384, 56, 23, 0, 2, 32, true, 3099, 0},
-    {"control/ict_head_skin.obj", 11248, 11144, 1, 4, 0, 3, 5, true, 0, 0},
-    {"control/penguin_control_mesh.obj", 201, 221, 1, 0, 0, 3, 8, false, 0, 0},
-    {"control/pixar_bottom_panel_creases.obj", 436, 434, 1, 0, 0, 3, 5, true, 127, 180},
-    {"control/pyramid_corners.obj", 20, 24, 1, 0, 3, 4, 6, true, 0, 0},
-    {"control/pyramid_edge_creases.obj", 20, 24, 1, 0, 3, 4, 6, true, 0, 0},
-    {"control/shaderball_surface.obj", 5914, 5838, 38, 0, 0, 3, 12, true, 0, 3456},
-    {"control/spot_control_mesh.obj", 188, 180, 1, 0, 0, 3, 6, true, 5, 0},
-    {"control/spot_quadrangulated.obj", 2930, 2928, 1, 0, 0, 3, 6, true, 88, 0},
-    {"udim/grid_with_udims.obj", 16, 9, 1, 1, 0, 2, 4, true, 0, 0},
-    {"udim/plane_3_udims.obj", 9, 4, 1, 1, 0, 2, 4, true, 0, 0},
-    {"tri/3torus.off", 19, 23, 1, 0, 3, 4, 8, false, 0, 0},
-    {"tri/anchor.off", 519, 1050, 1, 0, 4, 4, 34, false, 0, 0},
-    {"tri/blobby_3cc.off", 1820, 3417, 3, 4, 0, 2, 9, false, 0, 0},
-    {"tri/bob_small.ply", 250, 500, 1, 0, 1, 4, 9, false, 0, 0},
-    {"tri/cactus.off", 620, 1236, 1, 0, 0, 4, 14, false, 0, 0},
-    {"tri/cat_head.obj", 131, 248, 1, 1, 0, 3, 11, false, 0, 0},
-    {"tri/cowhead.obj", 4537, 9024, 1, 1, 0, 3, 8, false, 0, 0},
-    {"tri/dodecahedron_poly.obj", 20, 12, 1, 0, 0, 3, 3, false, 0, 0},
-    {"tri/double-torus.obj", 3070, 6144, 1, 0, 2, 6, 8, false, 0, 0},
-    {"tri/eight.off", 315, 634, 1, 0, 2, 4, 9, false, 0, 0},
-    {"tri/elephant-with-holes.off", 2798, 4463, 1, 106, 3, 2, 9, false, 0, 0},
-    {"tri/elephant.off", 2775, 5558, 1, 0, 3, 4, 9, false, 0, 0},
-    {"tri/goathead.obj", 2763, 5522, 1, 0, 0, 4, 8, false, 0, 0},
-    {"tri/hand_lowres.obj", 810, 1602, 1, 1, 0, 3, 8, false, 0, 0},
-    {"tri/head.off", 1487, 2918, 1, 3, 0, 4, 18, false, 0, 0},
-    {"tri/hemisphere.obj", 2051, 4000, 1, 1, 0, 4, 6, false, 0, 0},
-    {"tri/hexaSphere_polygons.obj", 1760, 882, 1, 0, 0, 3, 3, false, 0, 0},
-    {"tri/hexagon.obj", 3169, 6144, 1, 1, 0, 3, 6, false, 0, 0},
-    {"tri/hourglass_ico.obj", 23, 40, 1, 0, -1, 5, 10, false, 0, 0},
-    {"tri/kitten.obj", 9447, 18894, 1, 0, 1, 5, 8, false, 0, 0},
-    {"tri/koala_low_resolution.obj", 3560, 7116, 1, 0, 0, 4, 8, false, 0, 0},
-    {"tri/mannequin-devil.off", 12977, 25888, 1, 1, 0, 2, 12, false, 0, 0},
-    {"tri/mechpart_loop_control.obj", 115, 238, 1, 0, 3, 3, 16, false, 0, 0},
-    {"tri/moebius.obj", 280, 224, 1, 1, -1, 3, 4, false, 0, 0},
-    {"tri/pig.off", 468, 891, 1, 7, 0, 3, 9, false, 0, 0},
-    {"tri/rotor.off", 600, 1200, 1, 0, 1, 4, 13, false, 0, 0},
-    {"tri/soccerball.obj", 28740, 57600, 1, 0, 31, 3, 8, false, 0, 0},
-    {"tri/spot_low_resolution.obj", 829, 1654, 1, 0, 0, 3, 8, false, 0, 0},
-    {"tri/torus.obj", 3840, 7680, 1, 0, 1, 4, 8, false, 0, 0},
-    {"tri/torus3_genus3.obj", 864, 1728, 3, 0, 3, 6, 6, false, 0, 0},
-    {"tri/torus_quad.off", 25, 25, 1, 0, 1, 4, 4, false, 0, 0}}), [](auto const& instance) { return NameOf(instance); });
+INSTANTIATE_TEST_SUITE_P(
+    Public, InfoOfAsset,
+    testing::ValuesIn(std::vector<Facts>{
+        // path, vertices, faces, components, loops, genus, valence from, to, UVs, flipped, zero
+        // area
+        {"control/chess_knight.obj", 5596, 5592, 2, 0, 0, 3, 8, true, 0, 864},
+        {"control/chess_rook.obj", 15270, 15264, 5, 0, 2, 3, 12, true, 0, 0},
+        {"control/fancy_teapot.obj", 6072, 6120, 2, 0, 2, 3, 32, true, 0, 0},
+        {"control/ict_face_neutral.obj", 26719, 26384, 56, 23, 0, 2, 32, true, 3099, 0},
+        {"control/ict_head_skin.obj", 11248, 11144, 1, 4, 0, 3, 5, true, 0, 0},
+        {"control/penguin_control_mesh.obj", 201, 221, 1, 0, 0, 3, 8, false, 0, 0},
+        {"control/pixar_bottom_panel_creases.obj", 436, 434, 1, 0, 0, 3, 5, true, 127, 180},
+        {"control/pyramid_corners.obj", 20, 24, 1, 0, 3, 4, 6, true, 0, 0},
+        {"control/pyramid_edge_creases.obj", 20, 24, 1, 0, 3, 4, 6, true, 0, 0},
+        {"control/shaderball_surface.obj", 5914, 5838, 38, 0, 0, 3, 12, true, 0, 3456},
+        {"control/spot_control_mesh.obj", 188, 180, 1, 0, 0, 3, 6, true, 5, 0},
+        {"control/spot_quadrangulated.obj", 2930, 2928, 1, 0, 0, 3, 6, true, 88, 0},
+        {"udim/grid_with_udims.obj", 16, 9, 1, 1, 0, 2, 4, true, 0, 0},
+        {"udim/plane_3_udims.obj", 9, 4, 1, 1, 0, 2, 4, true, 0, 0},
+        {"tri/3torus.off", 19, 23, 1, 0, 3, 4, 8, false, 0, 0},
+        {"tri/anchor.off", 519, 1050, 1, 0, 4, 4, 34, false, 0, 0},
+        {"tri/blobby_3cc.off", 1820, 3417, 3, 4, 0, 2, 9, false, 0, 0},
+        {"tri/bob_small.ply", 250, 500, 1, 0, 1, 4, 9, false, 0, 0},
+        {"tri/cactus.off", 620, 1236, 1, 0, 0, 4, 14, false, 0, 0},
+        {"tri/cat_head.obj", 131, 248, 1, 1, 0, 3, 11, false, 0, 0},
+        {"tri/cowhead.obj", 4537, 9024, 1, 1, 0, 3, 8, false, 0, 0},
+        {"tri/dodecahedron_poly.obj", 20, 12, 1, 0, 0, 3, 3, false, 0, 0},
+        {"tri/double-torus.obj", 3070, 6144, 1, 0, 2, 6, 8, false, 0, 0},
+        {"tri/eight.off", 315, 634, 1, 0, 2, 4, 9, false, 0, 0},
+        {"tri/elephant-with-holes.off", 2798, 4463, 1, 106, 3, 2, 9, false, 0, 0},
+        {"tri/elephant.off", 2775, 5558, 1, 0, 3, 4, 9, false, 0, 0},
+        {"tri/goathead.obj", 2763, 5522, 1, 0, 0, 4, 8, false, 0, 0},
+        {"tri/hand_lowres.obj", 810, 1602, 1, 1, 0, 3, 8, false, 0, 0},
+        {"tri/head.off", 1487, 2918, 1, 3, 0, 4, 18, false, 0, 0},
+        {"tri/hemisphere.obj", 2051, 4000, 1, 1, 0, 4, 6, false, 0, 0},
+        {"tri/hexaSphere_polygons.obj", 1760, 882, 1, 0, 0, 3, 3, false, 0, 0},
+        {"tri/hexagon.obj", 3169, 6144, 1, 1, 0, 3, 6, false, 0, 0},
+        {"tri/hourglass_ico.obj", 23, 40, 1, 0, -1, 5, 10, false, 0, 0},
+        {"tri/kitten.obj", 9447, 18894, 1, 0, 1, 5, 8, false, 0, 0},
+        {"tri/koala_low_resolution.obj", 3560, 7116, 1, 0, 0, 4, 8, false, 0, 0},
+        {"tri/mannequin-devil.off", 12977, 25888, 1, 1, 0, 2, 12, false, 0, 0},
+        {"tri/mechpart_loop_control.obj", 115, 238, 1, 0, 3, 3, 16, false, 0, 0},
+        {"tri/moebius.obj", 280, 224, 1, 1, -1, 3, 4, false, 0, 0},
+        {"tri/pig.off", 468, 891, 1, 7, 0, 3, 9, false, 0, 0},
+        {"tri/rotor.off", 600, 1200, 1, 0, 1, 4, 13, false, 0, 0},
+        {"tri/soccerball.obj", 28740, 57600, 1, 0, 31, 3, 8, false, 0, 0},
+        {"tri/spot_low_resolution.obj", 829, 1654, 1, 0, 0, 3, 8, false, 0, 0},
+        {"tri/torus.obj", 3840, 7680, 1, 0, 1, 4, 8, false, 0, 0},
+        {"tri/torus3_genus3.obj", 864, 1728, 3, 0, 3, 6, 6, false, 0, 0},
+        {"tri/torus_quad.off", 25, 25, 1, 0, 1, 4, 4, false, 0, 0}}),
+    [](auto const& instance) { return NameOf(instance); });
 
 TEST(MeshInfo, AssetsHaveTheTilesOfTheTable) {
     std::vector<std::pair<std::string, std::vector<int>>> const rows = {
@@ -210,7 +220,8 @@ TEST(MeshInfo, AssetsHaveTheTilesOfTheTable) {
 }
 
 TEST(MeshInfo, AssetsHaveTheCreasesOfTheTable) {
-    for (auto const& [path, creases] : {std::pair{"tri/mechpart_loop_control.obj", 113u}, {"control/pixar_bottom_panel_creases.obj", 236u},
+    for (auto const& [path, creases] : {std::pair{"tri/mechpart_loop_control.obj", 113u},
+                                        {"control/pixar_bottom_panel_creases.obj", 236u},
                                         {"control/pyramid_edge_creases.obj", 6u}}) {
         if (!test::HasAsset(path)) GTEST_SKIP() << "no " << test::AssetPath(path);
         EXPECT_EQ(Describe(test::LoadAsset(path)).creases, creases) << path;
@@ -218,7 +229,8 @@ TEST(MeshInfo, AssetsHaveTheCreasesOfTheTable) {
 }
 
 TEST(MeshInfo, HeadWithoutOverlapHasNoneAndTheWholeFaceHasSome) {
-    // assets/README.md: the skin alone has no overlap; left and right parts of the face share texture space.
+    // assets/README.md: the skin alone has no overlap; left and right parts of the face share
+    // texture space.
     for (char const* path : {"control/ict_head_skin.obj", "control/ict_face_neutral.obj"}) {
         if (!test::HasAsset(path)) GTEST_SKIP() << "no " << test::AssetPath(path);
     }
@@ -267,10 +279,12 @@ Scene MakeBand(int n, bool isTwisted) {
     std::vector<std::vector<Index>> faces;
     for (int i = 0; i < n; ++i) {
         double const a = 2 * std::acos(-1.0) * i / n;
-        positions.insert(positions.end(), {std::cos(a), std::sin(a), 0, std::cos(a), std::sin(a), 1});
+        positions.insert(positions.end(),
+                         {std::cos(a), std::sin(a), 0, std::cos(a), std::sin(a), 1});
         int const next = (i + 1) % n;
         bool const isTurned = isTwisted && next == 0;
-        faces.push_back({2 * i, 2 * next + (isTurned ? 1 : 0), 2 * next + (isTurned ? 0 : 1), 2 * i + 1});
+        faces.push_back(
+            {2 * i, 2 * next + (isTurned ? 1 : 0), 2 * next + (isTurned ? 0 : 1), 2 * i + 1});
     }
     return test::MakeScene(std::move(positions), faces);
 }
@@ -299,7 +313,8 @@ TEST(MeshInfo, FaceWoundTheOtherWayIsADefectThatTurningCures) {
     EXPECT_EQ(CountDefects(info, "winding"), 4u);  // its four edges
     EXPECT_EQ(CountDefects(info, "not_orientable"), 0u);
     EXPECT_EQ(info.genus, 0);
-    EXPECT_NE(FindDefect(info, "winding")->message.find("turn the faces of one side round"), std::string::npos);
+    EXPECT_NE(FindDefect(info, "winding")->message.find("turn the faces of one side round"),
+              std::string::npos);
 }
 
 TEST(MeshInfo, EdgeOfThreeFacesIsNotManifold) {
@@ -313,15 +328,19 @@ TEST(MeshInfo, EdgeOfThreeFacesIsNotManifold) {
 
 TEST(MeshInfo, PointWhereTwoSurfacesTouchIsNotManifold) {
     // Two triangles that share vertex 0 only.
-    MeshInfo const info = Describe(test::MakeScene({0, 0, 0, 1, 0, 0, 1, 1, 0, -1, 0, 0, -1, -1, 0}, {{0, 1, 2}, {0, 3, 4}}));
+    MeshInfo const info = Describe(
+        test::MakeScene({0, 0, 0, 1, 0, 0, 1, 1, 0, -1, 0, 0, -1, -1, 0}, {{0, 1, 2}, {0, 3, 4}}));
     EXPECT_EQ(CountDefects(info, "non_manifold_vertex"), 1u);
     EXPECT_EQ(FindDefect(info, "non_manifold_vertex")->element, 0);
     EXPECT_EQ(info.genus, -1);
 }
 
 TEST(MeshInfo, TablesCountNonManifoldPlaces) {
-    EXPECT_EQ(CountDefects(Describe(test::LoadData("opensubdiv_shapes/catmark_fan.obj")), "non_manifold_edge"), 4u);
-    MeshInfo const vertices = Describe(test::LoadData("opensubdiv_shapes/catmark_nonman_verts.obj"));
+    EXPECT_EQ(CountDefects(Describe(test::LoadData("opensubdiv_shapes/catmark_fan.obj")),
+                           "non_manifold_edge"),
+              4u);
+    MeshInfo const vertices =
+        Describe(test::LoadData("opensubdiv_shapes/catmark_nonman_verts.obj"));
     EXPECT_EQ(CountDefects(vertices, "non_manifold_vertex"), 4u);
     EXPECT_EQ(CountDefects(vertices, "unreferenced_vertex"), 1u);
 }
@@ -382,7 +401,8 @@ Scene MakeQuads(std::vector<std::array<double, 8>> const& uvs) {
         Index const first = static_cast<Index>(4 * i);
         positions.insert(positions.end(), {x, 0, 0, x + 1, 0, 0, x + 1, 1, 0, x, 1, 0});
         faces.push_back({first, first + 1, first + 2, first + 3});
-        channel.valueIndices.insert(channel.valueIndices.end(), {first, first + 1, first + 2, first + 3});
+        channel.valueIndices.insert(channel.valueIndices.end(),
+                                    {first, first + 1, first + 2, first + 3});
         channel.numValues += 4;
     }
     scene = test::MakeScene(std::move(positions), faces);
@@ -391,52 +411,78 @@ Scene MakeQuads(std::vector<std::array<double, 8>> const& uvs) {
     return scene;
 }
 
-std::array<double, 8> Square(double u, double v, double size) { return {u, v, u + size, v, u + size, v + size, u, v + size}; }
+std::array<double, 8> Square(double u, double v, double size) {
+    return {u, v, u + size, v, u + size, v + size, u, v + size};
+}
 
 TEST(UVInfo, TilesAreNumberedByTensInV) {
     // 1001 + floor(u) + 10 floor(v)
-    auto const uv = Describe(MakeQuads({Square(0, 0, 1), Square(9, 0, 1), Square(0, 1, 1), Square(2.25, 3.25, 0.5)})).uv;
+    auto const uv = Describe(MakeQuads({Square(0, 0, 1), Square(9, 0, 1), Square(0, 1, 1),
+                                        Square(2.25, 3.25, 0.5)}))
+                        .uv;
     EXPECT_EQ(uv.tiles, (std::vector<int>{1001, 1010, 1011, 1033}));
     EXPECT_EQ(uv.outOfRangeFaces, 0u);
 }
 
 TEST(UVInfo, FacesOutsideTheUdimRangeAreCounted) {
-    auto const uv = Describe(MakeQuads({Square(0, 0, 1), Square(10.5, 0, 0.5), Square(-0.5, 0, 0.25), Square(0, -2, 1)})).uv;
+    auto const uv = Describe(MakeQuads({Square(0, 0, 1), Square(10.5, 0, 0.5),
+                                        Square(-0.5, 0, 0.25), Square(0, -2, 1)}))
+                        .uv;
     EXPECT_EQ(uv.outOfRangeFaces, 3u);
     EXPECT_EQ(uv.tiles, (std::vector<int>{1001}));
 }
 
 TEST(UVInfo, FlippedAndFlatFacesAreCountedApart) {
-    auto const uv = Describe(MakeQuads({Square(0, 0, 0.25), {0.5, 0, 0.5, 0.25, 0.75, 0.25, 0.75, 0}, {0.5, 0.5, 0.6, 0.6, 0.7, 0.7, 0.8, 0.8}})).uv;
+    auto const uv = Describe(MakeQuads({Square(0, 0, 0.25),
+                                        {0.5, 0, 0.5, 0.25, 0.75, 0.25, 0.75, 0},
+                                        {0.5, 0.5, 0.6, 0.6, 0.7, 0.7, 0.8, 0.8}}))
+                        .uv;
     EXPECT_EQ(uv.flippedFaces, 1u);
     EXPECT_EQ(uv.zeroAreaFaces, 1u);
 }
 
 TEST(UVInfo, FacesThatShareTextureSpaceOverlap) {
     // The second lies half on the first, the third beside both.
-    auto const uv = Describe(MakeQuads({Square(0, 0, 0.25), Square(0.125, 0, 0.25), Square(0.5, 0.5, 0.25)})).uv;
+    auto const uv =
+        Describe(MakeQuads({Square(0, 0, 0.25), Square(0.125, 0, 0.25), Square(0.5, 0.5, 0.25)}))
+            .uv;
     EXPECT_EQ(uv.overlapFaces, 2u);
 }
 
 TEST(UVInfo, FacesThatShareAnEdgeDoNotOverlap) {
     // Axis-parallel edges, on and off the lines of a 512 grid.
-    EXPECT_EQ(Describe(MakeQuads({Square(0, 0, 0.25), Square(0.25, 0, 0.25), Square(0, 0.25, 0.25)})).uv.overlapFaces, 0u);
-    EXPECT_EQ(Describe(MakeQuads({Square(0, 0, 0.3), Square(0.3, 0, 0.3), Square(0, 0.3, 0.3)})).uv.overlapFaces, 0u);
+    EXPECT_EQ(
+        Describe(MakeQuads({Square(0, 0, 0.25), Square(0.25, 0, 0.25), Square(0, 0.25, 0.25)}))
+            .uv.overlapFaces,
+        0u);
+    EXPECT_EQ(Describe(MakeQuads({Square(0, 0, 0.3), Square(0.3, 0, 0.3), Square(0, 0.3, 0.3)}))
+                  .uv.overlapFaces,
+              0u);
     // Edges at 45 degrees: a chequered square on its corner.
-    auto const diamond = [](double u, double v, double r) { return std::array<double, 8>{u, v - r, u + r, v, u, v + r, u - r, v}; };
-    EXPECT_EQ(Describe(MakeQuads({diamond(0.25, 0.25, 0.125), diamond(0.375, 0.375, 0.125), diamond(0.375, 0.125, 0.125)})).uv.overlapFaces, 0u);
+    auto const diamond = [](double u, double v, double r) {
+        return std::array<double, 8>{u, v - r, u + r, v, u, v + r, u - r, v};
+    };
+    EXPECT_EQ(Describe(MakeQuads({diamond(0.25, 0.25, 0.125), diamond(0.375, 0.375, 0.125),
+                                  diamond(0.375, 0.125, 0.125)}))
+                  .uv.overlapFaces,
+              0u);
 }
 
 TEST(UVInfo, ShapesWithoutOverlapInTheTableHaveNone) {
-    for (char const* name : {"bilinear_cube", "catmark_cube", "catmark_dart_edgecorner", "catmark_torus", "loop_cube", "loop_tetrahedron",
-                             "loop_cubes_semisharp", "catmark_pyramid"}) {
-        EXPECT_EQ(Describe(test::LoadData(std::string("opensubdiv_shapes/") + name + ".obj")).uv.overlapFaces, 0u) << name;
+    for (char const* name :
+         {"bilinear_cube", "catmark_cube", "catmark_dart_edgecorner", "catmark_torus", "loop_cube",
+          "loop_tetrahedron", "loop_cubes_semisharp", "catmark_pyramid"}) {
+        EXPECT_EQ(Describe(test::LoadData(std::string("opensubdiv_shapes/") + name + ".obj"))
+                      .uv.overlapFaces,
+                  0u)
+            << name;
     }
 }
 
 TEST(UVInfo, ShapesOfFullOverlapInTheTableOverlapInEveryFace) {
     for (char const* name : {"catmark_helmet", "catmark_torus_creases0"}) {
-        MeshInfo const info = Describe(test::LoadData(std::string("opensubdiv_shapes/") + name + ".obj"));
+        MeshInfo const info =
+            Describe(test::LoadData(std::string("opensubdiv_shapes/") + name + ".obj"));
         EXPECT_EQ(info.uv.overlapFaces, static_cast<size_t>(info.faces)) << name;
     }
 }

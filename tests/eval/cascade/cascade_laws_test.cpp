@@ -1,5 +1,4 @@
-#include "eval/cascade/cascade.h"
-
+// SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <map>
 #include <random>
@@ -9,6 +8,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include "eval/cascade/cascade.h"
 #include "support/cascade_meshes.h"
 #include "support/form_meshes.h"
 
@@ -34,8 +34,10 @@ using Points = std::vector<double>;
 
 /// A mesh as its own only level, with the operator of its own metric.
 struct SameLevel {
-    SameLevel(engine::Scene const& scene, BoundaryRule rule, double width, std::vector<double> const& widths = {})
-        : mesh(test::MakeSameMesh(scene)), level(far_ext::BuildCascadeLevel(mesh, {}, rule)),
+    SameLevel(engine::Scene const& scene, BoundaryRule rule, double width,
+              std::vector<double> const& widths = {})
+        : mesh(test::MakeSameMesh(scene)),
+          level(far_ext::BuildCascadeLevel(mesh, {}, rule)),
           cascade(scene.positions, widths, {.solver = CascadeSolver::Jacobi, .width = width}) {
         cascade.Step(level, 0);
     }
@@ -62,7 +64,8 @@ struct SameLevel {
 
 Eigen::VectorXd TakeHeights(Points const& points, Eigen::Vector3d const& gradient) {
     Eigen::VectorXd u(static_cast<Eigen::Index>(points.size() / 3));
-    for (Index i = 0; i < static_cast<Index>(u.size()); ++i) u[i] = gradient.dot(PointAt(points, i));
+    for (Index i = 0; i < static_cast<Index>(u.size()); ++i)
+        u[i] = gradient.dot(PointAt(points, i));
     return u;
 }
 
@@ -74,7 +77,8 @@ TEST(CascadeOperator, IsSymmetricAndItsStiffnessKeepsConstants) {
         for (auto rule : {BoundaryRule::Fixed, BoundaryRule::Natural}) {
             auto const levels = QuarterLevels(scene, 1, rule);
             auto const& level = levels.back();
-            eval::Cascade<double> cascade(scene.positions, {}, {.solver = CascadeSolver::Jacobi, .width = 0.3});
+            eval::Cascade<double> cascade(scene.positions, {},
+                                          {.solver = CascadeSolver::Jacobi, .width = 0.3});
             cascade.Step(level, 0);
             auto const& op = cascade.GetOperator();
             std::map<std::pair<Index, Index>, double> entries;
@@ -90,9 +94,11 @@ TEST(CascadeOperator, IsSymmetricAndItsStiffnessKeepsConstants) {
                 EXPECT_GT(op.masses[row], 0.0) << name;
             }
             for (auto const& [rows, entry] : entries) {
-                bool const areAlike = (rows.first < level.numSurface) == (rows.second < level.numSurface);
+                bool const areAlike =
+                    (rows.first < level.numSurface) == (rows.second < level.numSurface);
                 if (areAlike && rows.second < level.numUnknowns) {
-                    EXPECT_NEAR(entry, (entries[{rows.second, rows.first}]), 1e-12 * largest) << name;
+                    EXPECT_NEAR(entry, (entries[{rows.second, rows.first}]), 1e-12 * largest)
+                        << name;
                 }
             }
         }
@@ -103,7 +109,8 @@ TEST(CascadeOperator, IsSymmetricAndItsStiffnessKeepsConstants) {
 TEST(CascadeOperator, EquilateralTrianglesHaveTheirFigure) {
     auto const scene = LoadMesh("icosa");
     auto const levels = QuarterLevels(scene, 2, BoundaryRule::Fixed);
-    eval::Cascade<double> cascade(scene.positions, {}, {.solver = CascadeSolver::Jacobi, .width = 0.4});
+    eval::Cascade<double> cascade(scene.positions, {},
+                                  {.solver = CascadeSolver::Jacobi, .width = 0.4});
     for (auto const& level : levels) cascade.Step(level, 0);  // no sweep: the metric stays flat
     for (double edge : cascade.GetOperator().edges) EXPECT_NEAR(edge, 0.08 / std::sqrt(3.0), 1e-13);
 }
@@ -111,12 +118,14 @@ TEST(CascadeOperator, EquilateralTrianglesHaveTheirFigure) {
 engine::Scene MakeShearedLattice(Sdc::SchemeType scheme) {
     engine::Scene scene = test::MakeLattice(5, 4, scheme);
     Eigen::Matrix3d shear;
-    shear << 1, 0.4, 0, 0.1, 0.9, 0, 0.3, -0.2, 1;  // columns of the plane: (1, .1, .3) and (.4, .9, -.2)
+    shear << 1, 0.4, 0, 0.1, 0.9, 0, 0.3, -0.2,
+        1;  // columns of the plane: (1, .1, .3) and (.4, .9, -.2)
     scene.positions = Transform(scene.positions, shear, {3, 1, 2});
     return scene;
 }
 
-double const kLatticeArea = 20 * Eigen::Vector3d(1, 0.1, 0.3).cross(Eigen::Vector3d(0.4, 0.9, -0.2)).norm();
+double const kLatticeArea =
+    20 * Eigen::Vector3d(1, 0.1, 0.3).cross(Eigen::Vector3d(0.4, 0.9, -0.2)).norm();
 
 TEST(CascadeOperator, MassesAddUpToTheArea) {
     for (auto scheme : {Sdc::SCHEME_LOOP, Sdc::SCHEME_CATMARK}) {
@@ -132,16 +141,19 @@ TEST(CascadeOperator, ALinearFunctionHasItsDirichletEnergy) {
     for (auto scheme : {Sdc::SCHEME_LOOP, Sdc::SCHEME_CATMARK}) {
         auto const scene = MakeShearedLattice(scheme);
         SameLevel const same(scene, BoundaryRule::Natural, 0.3);
-        Eigen::Vector3d const normal = Eigen::Vector3d(1, 0.1, 0.3).cross(Eigen::Vector3d(0.4, 0.9, -0.2)).normalized();
+        Eigen::Vector3d const normal =
+            Eigen::Vector3d(1, 0.1, 0.3).cross(Eigen::Vector3d(0.4, 0.9, -0.2)).normalized();
         Eigen::Vector3d gradient(0.7, -1.1, 0.4);
         gradient -= normal.dot(gradient) * normal;
         double const expected = 0.045 * gradient.squaredNorm() * kLatticeArea;
-        EXPECT_NEAR(same.GetEnergy(TakeHeights(scene.positions, gradient)), expected, 1e-12 * expected);
+        EXPECT_NEAR(same.GetEnergy(TakeHeights(scene.positions, gradient)), expected,
+                    1e-12 * expected);
     }
 }
 
-// The same with a linear width on each triangle: the integral of sigma^2 / 2 by Gauss points, (2, 1, 1) / 6 and its
-// permutations, which are exact for squares of linear functions. A quad is the mean of its two pairs of triangles.
+// The same with a linear width on each triangle: the integral of sigma^2 / 2 by Gauss points, (2,
+// 1, 1) / 6 and its permutations, which are exact for squares of linear functions. A quad is the
+// mean of its two pairs of triangles.
 TEST(CascadeOperator, ALinearWidthEntersByItsExactMean) {
     for (auto scheme : {Sdc::SCHEME_LOOP, Sdc::SCHEME_CATMARK}) {
         auto const scene = MakeShearedLattice(scheme);
@@ -151,34 +163,42 @@ TEST(CascadeOperator, ALinearWidthEntersByItsExactMean) {
         SameLevel const same(scene, BoundaryRule::Natural, -1.0, widths);
         double integral = 0.0;
         auto const add = [&](std::array<Index, 3> const& t, double share) {
-            double const area = 0.5 * (PointAt(scene.positions, t[1]) - PointAt(scene.positions, t[0]))
-                                          .cross(PointAt(scene.positions, t[2]) - PointAt(scene.positions, t[0])).norm();
+            double const area =
+                0.5 * (PointAt(scene.positions, t[1]) - PointAt(scene.positions, t[0]))
+                          .cross(PointAt(scene.positions, t[2]) - PointAt(scene.positions, t[0]))
+                          .norm();
             for (size_t i = 0; i < 3; ++i) {
-                double const h = (4 * widths[t[i]] + widths[t[(i + 1) % 3]] + widths[t[(i + 2) % 3]]) / 6;
+                double const h =
+                    (4 * widths[t[i]] + widths[t[(i + 1) % 3]] + widths[t[(i + 2) % 3]]) / 6;
                 integral += share * area / 3 * h * h / 2;
             }
         };
         size_t const n = static_cast<size_t>(same.mesh.faceSize);
         for (size_t face = 0; face < same.mesh.faces.size(); face += n) {
             Index const* const f = &same.mesh.faces[face];
-            if (n == 3) add({f[0], f[1], f[2]}, 1.0);
-            else for (size_t k = 0; k < 4; ++k) add({f[k], f[(k + 1) % 4], f[(k + 2) % 4]}, 0.5);
+            if (n == 3)
+                add({f[0], f[1], f[2]}, 1.0);
+            else
+                for (size_t k = 0; k < 4; ++k) add({f[k], f[(k + 1) % 4], f[(k + 2) % 4]}, 0.5);
         }
         Eigen::Vector3d const gradient(1, 0.1, 0.3);  // in the plane
         double const expected = gradient.squaredNorm() * integral;
-        EXPECT_NEAR(same.GetEnergy(TakeHeights(scene.positions, gradient)), expected, 1e-12 * expected);
+        EXPECT_NEAR(same.GetEnergy(TakeHeights(scene.positions, gradient)), expected,
+                    1e-12 * expected);
     }
 }
 
-// A crease of a straight line has M = half of its two edges, and for linear u the integral of sigma^2 / 2 |u'|^2 along it with
-// linear sigma; two Gauss points are exact for it.
+// A crease of a straight line has M = half of its two edges, and for linear u the integral of
+// sigma^2 / 2 |u'|^2 along it with linear sigma; two Gauss points are exact for it.
 TEST(CascadeOperator, ACreaseIsALineOfItsOwn) {
-    engine::Scene const scene = test::MakeLattice(4, 4, Sdc::SCHEME_CATMARK);  // 10 to 14 is the middle line
+    engine::Scene const scene =
+        test::MakeLattice(4, 4, Sdc::SCHEME_CATMARK);  // 10 to 14 is the middle line
     auto mesh = test::MakeSameMesh(scene);
     for (Index i = 10; i < 14; ++i) mesh.creases.push_back({i, i + 1});
     CascadeLevel const level = far_ext::BuildCascadeLevel(mesh, {}, BoundaryRule::Fixed);
     auto positions = scene.positions;
-    for (Index i = 10; i < 15; ++i) positions[3 * static_cast<size_t>(i)] = 0.1 * (i - 10) * (i - 10);  // edges .1, .3, .5, .7
+    for (Index i = 10; i < 15; ++i)
+        positions[3 * static_cast<size_t>(i)] = 0.1 * (i - 10) * (i - 10);  // edges .1, .3, .5, .7
     std::vector<double> widths(25, 0.4);
     for (Index i = 10; i < 15; ++i) widths[static_cast<size_t>(i)] = 0.1 * (i - 9);
     eval::Cascade<double> cascade(positions, widths, {.solver = CascadeSolver::Jacobi});
@@ -193,7 +213,9 @@ TEST(CascadeOperator, ACreaseIsALineOfItsOwn) {
             double const length = (PointAt(positions, vertex) - PointAt(positions, other)).norm();
             double integral = 0.0;
             for (double sign : {-1.0, 1.0}) {
-                double const t = 0.5 + sign * 0.5 / std::sqrt(3.0), h = (1 - t) * widths[static_cast<size_t>(vertex)] + t * widths[static_cast<size_t>(other)];
+                double const t = 0.5 + sign * 0.5 / std::sqrt(3.0),
+                             h = (1 - t) * widths[static_cast<size_t>(vertex)] +
+                                 t * widths[static_cast<size_t>(other)];
                 integral += 0.5 * length * h * h / 2;
             }
             EXPECT_NEAR(op.edges[k], integral / (length * length), 1e-14);  // u' = 1 / length
@@ -203,34 +225,45 @@ TEST(CascadeOperator, ACreaseIsALineOfItsOwn) {
     }
 }
 
-// Of all triangles (of a quad those of both diagonals): the least angle, and the least area to the mean one.
+// Of all triangles (of a quad those of both diagonals): the least angle, and the least area to the
+// mean one.
 TEST(CascadeOperator, TellsTheShapesOfItsTriangles) {
     for (auto const& scene : {test::MakeIrregularTriangles(9, 8, 3), test::MakeTorus(9, 7)}) {
         auto const mesh = test::MakeSameMesh(scene);
         CascadeLevel const level = far_ext::BuildCascadeLevel(mesh, {}, BoundaryRule::Fixed);
-        eval::Cascade<double> cascade(scene.positions, {}, {.solver = CascadeSolver::Jacobi, .width = 0.1});
+        eval::Cascade<double> cascade(scene.positions, {},
+                                      {.solver = CascadeSolver::Jacobi, .width = 0.1});
         auto const report = cascade.Step(level, 0);
         CascadeMesh triangles;
-        for (size_t face = 0; face < mesh.faces.size(); face += static_cast<size_t>(mesh.faceSize)) {
+        for (size_t face = 0; face < mesh.faces.size();
+             face += static_cast<size_t>(mesh.faceSize)) {
             Index const* const f = &mesh.faces[face];
-            if (mesh.faceSize == 3) triangles.faces.insert(triangles.faces.end(), f, f + 3);
-            else for (size_t k = 0; k < 4; ++k) triangles.faces.insert(triangles.faces.end(), {f[k], f[(k + 1) % 4], f[(k + 2) % 4]});
+            if (mesh.faceSize == 3)
+                triangles.faces.insert(triangles.faces.end(), f, f + 3);
+            else
+                for (size_t k = 0; k < 4; ++k)
+                    triangles.faces.insert(triangles.faces.end(),
+                                           {f[k], f[(k + 1) % 4], f[(k + 2) % 4]});
         }
         double least = 1e300, sum = 0.0;
         for (size_t face = 0; face < triangles.faces.size(); face += 3) {
-            auto const at = [&](size_t k) -> Eigen::Vector3d { return PointAt(scene.positions, triangles.faces[face + k]); };
+            auto const at = [&](size_t k) -> Eigen::Vector3d {
+                return PointAt(scene.positions, triangles.faces[face + k]);
+            };
             double const area = (at(1) - at(0)).cross(at(2) - at(0)).norm();
             least = std::min(least, area);
             sum += area;
         }
-        EXPECT_NEAR(report.minAngleRadians, MinAngleDegrees(scene.positions, triangles) * kPi / 180, 1e-12);
+        EXPECT_NEAR(report.minAngleRadians, MinAngleDegrees(scene.positions, triangles) * kPi / 180,
+                    1e-12);
         EXPECT_NEAR(report.areaRatio, least * triangles.GetNumFaces() / sum, 1e-12);
     }
     // A hub of 64 triangles within a fixed rim: the least angle is the hub's own.
     Points positions{0, 0, 0};
     std::vector<std::vector<Index>> faces;
     for (Index i = 0; i < 64; ++i) {
-        positions.insert(positions.end(), {std::cos(2 * kPi * i / 64), std::sin(2 * kPi * i / 64), 0});
+        positions.insert(positions.end(),
+                         {std::cos(2 * kPi * i / 64), std::sin(2 * kPi * i / 64), 0});
         faces.push_back({0, 1 + i, 1 + (i + 1) % 64});
     }
     SameLevel same(test::MakeScene(positions, faces, Sdc::SCHEME_LOOP), BoundaryRule::Fixed, 0.1);
@@ -240,7 +273,8 @@ TEST(CascadeOperator, TellsTheShapesOfItsTriangles) {
 // ---- motions ------------------------------------------------------------------------------------
 
 TEST(CascadeLaws, RotateThenFilterIsFilterThenRotate) {
-    Eigen::Matrix3d const rotation = Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -0.5).normalized()).toRotationMatrix();
+    Eigen::Matrix3d const rotation =
+        Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -0.5).normalized()).toRotationMatrix();
     Eigen::Vector3d const shift(3, -2, 5);
     for (bool isQuads : {false, true}) {
         auto scene = isQuads ? test::MakeGridWithHole(6, 5) : LoadMesh("gridholetri");
@@ -248,7 +282,8 @@ TEST(CascadeLaws, RotateThenFilterIsFilterThenRotate) {
         CascadeOptions const options{.solver = CascadeSolver::Exact, .width = 0.3};
         auto const rotated = Transform(Filter(scene, levels, options), rotation, shift);
         scene.positions = Transform(scene.positions, rotation, shift);
-        EXPECT_LT(test::LargestDifference(Filter(scene, levels, options), rotated), 1e-13 * test::BoxDiagonal(scene.positions));
+        EXPECT_LT(test::LargestDifference(Filter(scene, levels, options), rotated),
+                  1e-13 * test::BoxDiagonal(scene.positions));
     }
 }
 
@@ -259,21 +294,26 @@ TEST(CascadeLaws, ScaledPointsWithAScaledWidthScaleTheResult) {
     auto const points = Filter(scene, levels, {.solver = CascadeSolver::Exact, .width = 0.1});
     for (double s : {1e-6, 3.7, 1e6}) {
         auto scaled = scene;
-        scaled.positions = Transform(scene.positions, s * Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
-        auto const expected = Transform(points, s * Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
-        auto const found = Filter(scaled, levels, {.solver = CascadeSolver::Exact, .width = 0.1 * s});
-        EXPECT_LT(test::LargestDifference(found, expected), 1e-13 * test::BoxDiagonal(scaled.positions));
+        scaled.positions =
+            Transform(scene.positions, s * Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
+        auto const expected =
+            Transform(points, s * Eigen::Matrix3d::Identity(), Eigen::Vector3d::Zero());
+        auto const found =
+            Filter(scaled, levels, {.solver = CascadeSolver::Exact, .width = 0.1 * s});
+        EXPECT_LT(test::LargestDifference(found, expected),
+                  1e-13 * test::BoxDiagonal(scaled.positions));
     }
 }
 
-// The residual is to |M (X0 - centroid)|: where a mesh lies does not matter. Far off, points have fewer digits: 1e3 of the box
-// leaves 13.
+// The residual is to |M (X0 - centroid)|: where a mesh lies does not matter. Far off, points have
+// fewer digits: 1e3 of the box leaves 13.
 TEST(CascadeLaws, IterationsDoNotDependOnWhereAMeshLies) {
     auto const scene = LoadMesh("torustri");
     auto const levels = QuarterLevels(scene, 3, BoundaryRule::Fixed);
     std::vector<std::array<double, 2>> found;
     for (double shift : {0.0, 3e3}) {
-        auto const points = Transform(scene.positions, Eigen::Matrix3d::Identity(), {shift, -shift, shift});
+        auto const points =
+            Transform(scene.positions, Eigen::Matrix3d::Identity(), {shift, -shift, shift});
         eval::Cascade<double> cascade(points, {}, {.tolerance = 1e-6, .width = 0.1});
         eval::CascadeStepReport report;
         for (auto const& level : levels) report = cascade.Step(level, 1000);
@@ -296,39 +336,54 @@ TEST(CascadeLaws, SweepsInSinglePrecisionAreThoseInDouble) {
             EXPECT_NEAR(a.residual, b.residual, 1e-6);
             EXPECT_GT(b.residual, 1e-5);
         }
-        EXPECT_LT(test::LargestDifference(single.GetPositions(), twice.GetPositions()), 2e-6 * test::BoxDiagonal(scene.positions));
+        EXPECT_LT(test::LargestDifference(single.GetPositions(), twice.GetPositions()),
+                  2e-6 * test::BoxDiagonal(scene.positions));
         EXPECT_GT(test::LargestDifference(twice.GetPositions(), twice.GetStartPositions()), 1e-2);
     }
 }
 
 // ---- fixed points -------------------------------------------------------------------------------
 
-// On a polyhedron whose vertices are all alike, L X points along X. X . L X over all vertices is a times twice the area (the
-// area's gradient, and Euler on a function of degree 2), X . M X is r^2 times the area: (r_k^2 + sigma^2) r = r_k^2 r0.
+// On a polyhedron whose vertices are all alike, L X points along X. X . L X over all vertices is a
+// times twice the area (the area's gradient, and Euler on a function of degree 2), X . M X is r^2
+// times the area: (r_k^2 + sigma^2) r = r_k^2 r0.
 TEST(CascadeLaws, RegularPolyhedraFollowTheRecursionOfASphere) {
-    for (auto scene : {test::MakeTetrahedron(), test::MakeBipyramid(4), LoadMesh("icosa"), test::MakeCube()}) {
+    for (auto scene :
+         {test::MakeTetrahedron(), test::MakeBipyramid(4), LoadMesh("icosa"), test::MakeCube()}) {
         double const r0 = PointAt(scene.positions, 0).norm();
         for (double share : {0.1, 0.3, 0.45, 0.5, 0.7}) {
             double const sigma = share * r0;
-            CascadeLevel const level = far_ext::BuildCascadeLevel(test::MakeSameMesh(scene), {}, BoundaryRule::Fixed);
-            eval::Cascade<double> cascade(scene.positions, {}, {.solver = CascadeSolver::Exact, .width = sigma});
+            CascadeLevel const level =
+                far_ext::BuildCascadeLevel(test::MakeSameMesh(scene), {}, BoundaryRule::Fixed);
+            eval::Cascade<double> cascade(scene.positions, {},
+                                          {.solver = CascadeSolver::Exact, .width = sigma});
             double r = r0;
             for (int k = 0; k < 60; ++k) {
-                if (k == 0) cascade.Step(level, 1); else cascade.Repeat(1);
+                if (k == 0)
+                    cascade.Step(level, 1);
+                else
+                    cascade.Repeat(1);
                 double const next = r0 / (1 + sigma * sigma / (r * r));
                 if (next < 1e-6 * r0) break;  // gone
                 r = next;
-                EXPECT_NEAR(test::MeanRadius(cascade.GetPositions()), r, 1e-10 * r0) << share << " step " << k;
+                EXPECT_NEAR(test::MeanRadius(cascade.GetPositions()), r, 1e-10 * r0)
+                    << share << " step " << k;
             }
-            // The fixed point, where there is one; at 0.45 a step leaves 2 sigma^2 / (r r0) = 0.56 of the distance to it.
-            if (share < 0.5) { EXPECT_NEAR(r, (r0 + std::sqrt(r0 * r0 - 4 * sigma * sigma)) / 2, 1e-10 * r0); }
-            if (share > 0.5) { EXPECT_LT(r, 1e-3 * r0); }
+            // The fixed point, where there is one; at 0.45 a step leaves 2 sigma^2 / (r r0) = 0.56
+            // of the distance to it.
+            if (share < 0.5) {
+                EXPECT_NEAR(r, (r0 + std::sqrt(r0 * r0 - 4 * sigma * sigma)) / 2, 1e-10 * r0);
+            }
+            if (share > 0.5) {
+                EXPECT_LT(r, 1e-3 * r0);
+            }
         }
     }
 }
 
-// The middle of a tube between fixed rims. Area per ring of vertices: 2 n sin(pi / n) r h; its radial derivative gives
-// r (r0 - r) = a: the cylinder's fixed point, exactly. What the rims do decays as exp(-distance sqrt(2) / sigma).
+// The middle of a tube between fixed rims. Area per ring of vertices: 2 n sin(pi / n) r h; its
+// radial derivative gives r (r0 - r) = a: the cylinder's fixed point, exactly. What the rims do
+// decays as exp(-distance sqrt(2) / sigma).
 TEST(CascadeLaws, ATubeSettlesAtTheFixedPointOfACylinder) {
     constexpr int n = 12, m = 60;
     double const sigma = 0.3, h = 0.15;
@@ -337,7 +392,8 @@ TEST(CascadeLaws, ATubeSettlesAtTheFixedPointOfACylinder) {
         std::vector<std::vector<Index>> faces;
         for (int j = 0; j <= m; ++j) {
             for (int i = 0; i < n; ++i) {
-                positions.insert(positions.end(), {std::cos(2 * kPi * i / n), std::sin(2 * kPi * i / n), h * j});
+                positions.insert(positions.end(),
+                                 {std::cos(2 * kPi * i / n), std::sin(2 * kPi * i / n), h * j});
                 if (j == m) continue;
                 int const a = j * n + i, b = j * n + (i + 1) % n;
                 if (isQuads) {
@@ -348,15 +404,19 @@ TEST(CascadeLaws, ATubeSettlesAtTheFixedPointOfACylinder) {
                 }
             }
         }
-        auto const scene = test::MakeScene(positions, faces, isQuads ? Sdc::SCHEME_CATMARK : Sdc::SCHEME_LOOP);
-        CascadeLevel const level = far_ext::BuildCascadeLevel(test::MakeSameMesh(scene), {}, BoundaryRule::Fixed);
-        eval::Cascade<double> cascade(positions, {}, {.solver = CascadeSolver::Exact, .width = sigma});
+        auto const scene =
+            test::MakeScene(positions, faces, isQuads ? Sdc::SCHEME_CATMARK : Sdc::SCHEME_LOOP);
+        CascadeLevel const level =
+            far_ext::BuildCascadeLevel(test::MakeSameMesh(scene), {}, BoundaryRule::Fixed);
+        eval::Cascade<double> cascade(positions, {},
+                                      {.solver = CascadeSolver::Exact, .width = sigma});
         cascade.Step(level, 1);
         for (int repeat = 0; repeat < 30; ++repeat) EXPECT_FALSE(cascade.Repeat(1).isMetricFrozen);
         auto const points = cascade.GetPositions();
         for (Index i = n * m / 2; i < n * m / 2 + n; ++i) {
             auto const point = PointAt(points, i);
-            EXPECT_NEAR(std::hypot(point[0], point[1]), (1 + std::sqrt(1 - 2 * sigma * sigma)) / 2, 1e-9);
+            EXPECT_NEAR(std::hypot(point[0], point[1]), (1 + std::sqrt(1 - 2 * sigma * sigma)) / 2,
+                        1e-9);
             EXPECT_NEAR(point[2], h * m / 2, 1e-9);
         }
     }
@@ -368,7 +428,8 @@ TEST(CascadeLaws, ASphereMeetsItsFixedPointToSecondOrder) {
     std::vector<double> errors;
     for (int k = 1; k <= 3; ++k) {
         auto const scene = test::MakeIcosphere(k);
-        CascadeLevel const level = far_ext::BuildCascadeLevel(test::MakeSameMesh(scene), {}, BoundaryRule::Fixed);
+        CascadeLevel const level =
+            far_ext::BuildCascadeLevel(test::MakeSameMesh(scene), {}, BoundaryRule::Fixed);
         eval::Cascade<double> cascade(scene.positions, {}, {.tolerance = 1e-12, .width = sigma});
         cascade.Step(level, 1000);
         for (int repeat = 0; repeat < 60; ++repeat) cascade.Repeat(1000);
@@ -380,49 +441,65 @@ TEST(CascadeLaws, ASphereMeetsItsFixedPointToSecondOrder) {
 
 // ---- local widths -------------------------------------------------------------------------------
 
-/// Runs a cascade with widths and counts vertices that are not where they started, to the bit: of all, and of `marked`.
+/// Runs a cascade with widths and counts vertices that are not where they started, to the bit: of
+/// all, and of `marked`.
 template <class Scalar>
-std::pair<int, int> CountMoved(engine::Scene const& scene, std::list<CascadeLevel> const& levels, std::vector<double> const& widths,
-                               CascadeOptions const& options, std::vector<char> const& marked) {
+std::pair<int, int> CountMoved(engine::Scene const& scene, std::list<CascadeLevel> const& levels,
+                               std::vector<double> const& widths, CascadeOptions const& options,
+                               std::vector<char> const& marked) {
     eval::Cascade<Scalar> cascade(scene.positions, widths, options);
     for (auto const& level : levels) cascade.Step(level, 12);
     auto const points = cascade.GetPositions(), start = cascade.GetStartPositions();
     std::pair<int, int> moved{0, 0};
     for (size_t i = 0; i < points.size() / 3; ++i) {
-        bool const hasMoved = points[3 * i] != start[3 * i] || points[3 * i + 1] != start[3 * i + 1] || points[3 * i + 2] != start[3 * i + 2];
+        bool const hasMoved = points[3 * i] != start[3 * i] ||
+                              points[3 * i + 1] != start[3 * i + 1] ||
+                              points[3 * i + 2] != start[3 * i + 2];
         moved.first += hasMoved;
         moved.second += hasMoved && marked[i];
     }
     return moved;
 }
 
-/// All solvers, in double and where they can in float: marked vertices stay to the bit, more than `atLeast` others move.
-void ExpectStill(engine::Scene const& scene, std::list<CascadeLevel> const& levels, std::vector<double> const& widths, std::vector<char> const& marked, int atLeast) {
+/// All solvers, in double and where they can in float: marked vertices stay to the bit, more than
+/// `atLeast` others move.
+void ExpectStill(engine::Scene const& scene, std::list<CascadeLevel> const& levels,
+                 std::vector<double> const& widths, std::vector<char> const& marked, int atLeast) {
     for (auto const& [solver, tolerance] : kSolvers) {
-        auto const moved = CountMoved<double>(scene, levels, widths, {.solver = solver, .tolerance = tolerance}, marked);
+        auto const moved = CountMoved<double>(scene, levels, widths,
+                                              {.solver = solver, .tolerance = tolerance}, marked);
         EXPECT_GT(moved.first, atLeast);
         EXPECT_EQ(moved.second, 0);
     }
-    auto const moved = CountMoved<float>(scene, levels, widths, {.solver = CascadeSolver::Jacobi}, marked);
+    auto const moved =
+        CountMoved<float>(scene, levels, widths, {.solver = CascadeSolver::Jacobi}, marked);
     EXPECT_GT(moved.first, atLeast);
     EXPECT_EQ(moved.second, 0);
 }
 
-/// Vertices of level `count` in faces of the start mesh that the filter leaves alone. Widths are filtered, too, and enter a
-/// ring of neighbours at each level, 1/4 + 1/8 + ... of an edge of the start mesh: less than the ring that is left out here.
-std::vector<char> MarkStill(engine::Scene const& scene, int count, std::vector<double> const& widths) {
+/// Vertices of level `count` in faces of the start mesh that the filter leaves alone. Widths are
+/// filtered, too, and enter a ring of neighbours at each level, 1/4 + 1/8 + ... of an edge of the
+/// start mesh: less than the ring that is left out here.
+std::vector<char> MarkStill(engine::Scene const& scene, int count,
+                            std::vector<double> const& widths) {
     auto const refiner = test::MakeRefiner(scene, count);
     auto const base = refiner->GetLevel(0);
-    auto const allOf = [](auto const& indices, auto const& holds) { return std::all_of(indices.begin(), indices.end(), holds); };
+    auto const allOf = [](auto const& indices, auto const& holds) {
+        return std::all_of(indices.begin(), indices.end(), holds);
+    };
     std::vector<char> isFar(widths.size()), isStill;
     for (Index i = 0; i < base.GetNumVertices(); ++i) {
-        isFar[i] = allOf(base.GetVertexFaces(i), [&](Index face) { return allOf(base.GetFaceVertices(face), [&](Index j) { return widths[j] == 0.0; }); });
+        isFar[i] = allOf(base.GetVertexFaces(i), [&](Index face) {
+            return allOf(base.GetFaceVertices(face), [&](Index j) { return widths[j] == 0.0; });
+        });
     }
-    for (Index face = 0; face < base.GetNumFaces(); ++face) isStill.push_back(allOf(base.GetFaceVertices(face), [&](Index i) { return isFar[i]; }));
+    for (Index face = 0; face < base.GetNumFaces(); ++face)
+        isStill.push_back(allOf(base.GetFaceVertices(face), [&](Index i) { return isFar[i]; }));
     for (int k = 1; k <= count; ++k) {
         auto const level = refiner->GetLevel(k);
         std::vector<char> fine;
-        for (Index face = 0; face < level.GetNumFaces(); ++face) fine.push_back(isStill[level.GetFaceParentFace(face)]);
+        for (Index face = 0; face < level.GetNumFaces(); ++face)
+            fine.push_back(isStill[level.GetFaceParentFace(face)]);
         isStill = fine;
     }
     auto const last = refiner->GetLevel(count);
@@ -433,8 +510,9 @@ std::vector<char> MarkStill(engine::Scene const& scene, int count, std::vector<d
     return marked;
 }
 
-// Widths on the edges of a cube alone, on faces of two triangles or one quad each that have been refined before: all that
-// lies in faces away from the edges stays, to the bit, by every solver, in both precisions.
+// Widths on the edges of a cube alone, on faces of two triangles or one quad each that have been
+// refined before: all that lies in faces away from the edges stays, to the bit, by every solver, in
+// both precisions.
 TEST(CascadeLaws, OnlyEdgesOfACubeAreFiltered) {
     for (bool isQuads : {false, true}) {
         engine::Scene cube = test::MakeCube();
@@ -449,7 +527,8 @@ TEST(CascadeLaws, OnlyEdgesOfACubeAreFiltered) {
         }
         // Three levels of linear interpolation make the start mesh.
         auto const refiner = test::MakeRefiner(cube, 3);
-        eval::Cascade<double> flat(cube.positions, {}, {.solver = CascadeSolver::Jacobi, .width = 0.0});
+        eval::Cascade<double> flat(cube.positions, {},
+                                   {.solver = CascadeSolver::Jacobi, .width = 0.0});
         auto const flatLevels = QuarterLevels(cube, 3, BoundaryRule::Fixed);
         for (auto const& level : flatLevels) flat.Step(level, 0);
         std::vector<std::vector<Index>> faces;
@@ -476,7 +555,8 @@ TEST(CascadeLaws, WithoutWidthOnATriangleItStaysToTheBit) {
     for (auto rule : {BoundaryRule::Fixed, BoundaryRule::Natural}) {
         auto const scene = LoadMesh("gridholetri");
         std::vector<double> widths;
-        for (Index i = 0; i < scene.cage.numVertices; ++i) widths.push_back(PointAt(scene.positions, i)[0] > 3.5 ? 0.2 : 0.0);
+        for (Index i = 0; i < scene.cage.numVertices; ++i)
+            widths.push_back(PointAt(scene.positions, i)[0] > 3.5 ? 0.2 : 0.0);
         auto const levels = QuarterLevels(scene, 3, rule);
         auto const marked = MarkStill(scene, 3, widths);
         ASSERT_GT(std::count(marked.begin(), marked.end(), 1), 300);
@@ -488,7 +568,9 @@ TEST(CascadeLaws, WithoutWidthOnATriangleItStaysToTheBit) {
 TEST(CascadeLaws, EqualLocalWidthsAreAWidthForAll) {
     auto const scene = LoadMesh("torustri");
     auto const levels = QuarterLevels(scene, 3, BoundaryRule::Fixed);
-    eval::Cascade<double> local(scene.positions, std::vector<double>(static_cast<size_t>(scene.cage.numVertices), 0.1), {.solver = CascadeSolver::Exact});
+    eval::Cascade<double> local(
+        scene.positions, std::vector<double>(static_cast<size_t>(scene.cage.numVertices), 0.1),
+        {.solver = CascadeSolver::Exact});
     for (auto const& level : levels) local.Step(level, 1);
     for (double width : local.GetWidths()) EXPECT_NEAR(width, 0.1, 1e-13);
     auto const global = Filter(scene, levels, {.solver = CascadeSolver::Exact, .width = 0.1});
@@ -498,15 +580,19 @@ TEST(CascadeLaws, EqualLocalWidthsAreAWidthForAll) {
 // ---- threads ------------------------------------------------------------------------------------
 
 template <class Scalar>
-void ExpectSameBits(engine::Scene const& scene, std::list<CascadeLevel> const& levels, std::vector<double> const& widths, CascadeOptions const& options) {
+void ExpectSameBits(engine::Scene const& scene, std::list<CascadeLevel> const& levels,
+                    std::vector<double> const& widths, CascadeOptions const& options) {
     Points first;
     double residual = 0.0;
     for (int threads : {1, 4}) {
-        tbb::global_control const limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
+        tbb::global_control const limit(tbb::global_control::max_allowed_parallelism,
+                                        static_cast<size_t>(threads));
         tbb::task_arena arena(threads);
         eval::Cascade<Scalar> cascade(scene.positions, widths, options);
         eval::CascadeStepReport report;
-        arena.execute([&] { for (auto const& level : levels) report = cascade.Step(level, 20); });
+        arena.execute([&] {
+            for (auto const& level : levels) report = cascade.Step(level, 20);
+        });
         if (threads == 1) {
             first = cascade.GetPositions();
             residual = report.residual;
@@ -524,7 +610,8 @@ TEST(CascadeLaws, ThreadsDoNotChangeABit) {
     std::vector<double> widths;
     for (double length : MeasureEdges(scene).atVertices) widths.push_back(0.12 * length);
     for (auto const& [solver, tolerance] : kSolvers) {
-        ExpectSameBits<double>(scene, levels, {}, {.solver = solver, .tolerance = tolerance, .width = 0.1});
+        ExpectSameBits<double>(scene, levels, {},
+                               {.solver = solver, .tolerance = tolerance, .width = 0.1});
         ExpectSameBits<double>(scene, levels, widths, {.solver = solver, .tolerance = tolerance});
     }
     ExpectSameBits<float>(scene, levels, {}, {.solver = CascadeSolver::Jacobi, .width = 0.1});
@@ -537,8 +624,11 @@ TEST(CascadeGraph, TheBaseStaysToTheBitAndHeightsMove) {
     auto const scene = LoadMesh("gridholetri");
     auto const levels = QuarterLevels(scene, 3, BoundaryRule::Fixed);
     for (auto const& [solver, tolerance] : kSolvers) {
-        eval::Cascade<double> cascade(scene.positions, {}, {.solver = solver, .tolerance = tolerance, .width = 0.3, .isGraph = true});
-        eval::Cascade<double> start(scene.positions, {}, {.solver = CascadeSolver::Jacobi, .width = 0.0});
+        eval::Cascade<double> cascade(
+            scene.positions, {},
+            {.solver = solver, .tolerance = tolerance, .width = 0.3, .isGraph = true});
+        eval::Cascade<double> start(scene.positions, {},
+                                    {.solver = CascadeSolver::Jacobi, .width = 0.0});
         for (auto const& level : levels) {
             cascade.Step(level, 20);
             start.Step(level, 0);
@@ -557,28 +647,36 @@ TEST(CascadeGraph, TheBaseStaysToTheBitAndHeightsMove) {
 TEST(CascadeGraph, APlaneWithAFixedBoundaryStays) {
     for (bool isQuads : {false, true}) {
         auto scene = isQuads ? test::MakeGridWithHole(6, 5) : LoadMesh("gridholetri");
-        for (size_t i = 0; i < scene.positions.size(); i += 3) scene.positions[i + 2] = 0.7 * scene.positions[i] - 1.3 * scene.positions[i + 1] + 2;
+        for (size_t i = 0; i < scene.positions.size(); i += 3)
+            scene.positions[i + 2] = 0.7 * scene.positions[i] - 1.3 * scene.positions[i + 1] + 2;
         auto const levels = QuarterLevels(scene, 3, BoundaryRule::Fixed);
         for (auto const& [solver, tolerance] : kSolvers) {
-            eval::Cascade<double> cascade(scene.positions, {}, {.solver = solver, .tolerance = tolerance, .width = 0.5, .isGraph = true});
+            eval::Cascade<double> cascade(
+                scene.positions, {},
+                {.solver = solver, .tolerance = tolerance, .width = 0.5, .isGraph = true});
             for (auto const& level : levels) cascade.Step(level, 20);
-            EXPECT_LT(test::LargestDifference(cascade.GetPositions(), cascade.GetStartPositions()), 1e-12);
+            EXPECT_LT(test::LargestDifference(cascade.GetPositions(), cascade.GetStartPositions()),
+                      1e-12);
             auto const points = cascade.GetPositions();
-            for (size_t i = 0; i < points.size(); i += 3) EXPECT_NEAR(points[i + 2], 0.7 * points[i] - 1.3 * points[i + 1] + 2, 1e-12);
+            for (size_t i = 0; i < points.size(); i += 3)
+                EXPECT_NEAR(points[i + 2], 0.7 * points[i] - 1.3 * points[i + 1] + 2, 1e-12);
         }
     }
 }
 
-// (M + L) z = M z0 on the plane is one linear problem per level: assembled triangle by triangle and solved densely it gives the
-// exact cascade's heights; another step has the same operator and the same answer; all levels have the same angles.
+// (M + L) z = M z0 on the plane is one linear problem per level: assembled triangle by triangle and
+// solved densely it gives the exact cascade's heights; another step has the same operator and the
+// same answer; all levels have the same angles.
 TEST(CascadeGraph, IsADirectSolveOnThePlanesMetric) {
     auto const scene = LoadMesh("gridholetri");
     auto const levels = QuarterLevels(scene, 2, BoundaryRule::Fixed);
     auto const refiner = test::MakeRefiner(scene, 2);
     auto const mesh = far_ext::MakeCascadeMesh(*refiner, 2);
     double const sigma = 0.5, a = sigma * sigma / 2;
-    eval::Cascade<double> cascade(scene.positions, {}, {.solver = CascadeSolver::Exact, .width = sigma, .isGraph = true});
-    eval::Cascade<double> start(scene.positions, {}, {.solver = CascadeSolver::Jacobi, .width = 0.0});
+    eval::Cascade<double> cascade(
+        scene.positions, {}, {.solver = CascadeSolver::Exact, .width = sigma, .isGraph = true});
+    eval::Cascade<double> start(scene.positions, {},
+                                {.solver = CascadeSolver::Jacobi, .width = 0.0});
     std::vector<double> angles;
     for (auto const& level : levels) {
         auto const report = cascade.Step(level, 1);
@@ -603,7 +701,9 @@ TEST(CascadeGraph, IsADirectSolveOnThePlanesMetric) {
             A(vertex, vertex) += area / 3;
             rightSide[vertex] += area / 3 * PointAt(x0, vertex)[2];
             for (size_t j = 0; j < 3; ++j) {
-                A(vertex, mesh.faces[face + j]) += a * (p[(i + 2) % 3] - p[(i + 1) % 3]).dot(p[(j + 2) % 3] - p[(j + 1) % 3]) / (4 * area);
+                A(vertex, mesh.faces[face + j]) +=
+                    a * (p[(i + 2) % 3] - p[(i + 1) % 3]).dot(p[(j + 2) % 3] - p[(j + 1) % 3]) /
+                    (4 * area);
             }
         }
     }
@@ -615,7 +715,8 @@ TEST(CascadeGraph, IsADirectSolveOnThePlanesMetric) {
     }
     Eigen::VectorXd const heights = A.partialPivLu().solve(rightSide);
     auto const points = cascade.GetPositions();
-    for (Index vertex = 0; vertex < mesh.numVertices; ++vertex) EXPECT_NEAR(PointAt(points, vertex)[2], heights[vertex], 1e-12);
+    for (Index vertex = 0; vertex < mesh.numVertices; ++vertex)
+        EXPECT_NEAR(PointAt(points, vertex)[2], heights[vertex], 1e-12);
 
     auto const edges = cascade.GetOperator().edges, masses = cascade.GetOperator().masses;
     cascade.Repeat(1);
@@ -624,13 +725,15 @@ TEST(CascadeGraph, IsADirectSolveOnThePlanesMetric) {
     EXPECT_EQ(cascade.GetPositions(), points);
 }
 
-// Widths are filtered along: those of level 1 are the ones that level 2 starts from, over the plane.
+// Widths are filtered along: those of level 1 are the ones that level 2 starts from, over the
+// plane.
 TEST(CascadeGraph, FilteredWidthsEnterTheNextLevel) {
     auto const scene = LoadMesh("gridholetri");
     std::vector<double> widths;
     for (Index i = 0; i < scene.cage.numVertices; ++i) widths.push_back(i % 3 == 0 ? 0.6 : 0.1);
     auto const levels = QuarterLevels(scene, 2, BoundaryRule::Fixed);
-    eval::Cascade<double> cascade(scene.positions, widths, {.solver = CascadeSolver::Exact, .isGraph = true});
+    eval::Cascade<double> cascade(scene.positions, widths,
+                                  {.solver = CascadeSolver::Exact, .isGraph = true});
     cascade.Step(levels.front(), 1);
     auto flat = cascade.GetPositions();
     auto const filtered = cascade.GetWidths();
@@ -638,45 +741,65 @@ TEST(CascadeGraph, FilteredWidthsEnterTheNextLevel) {
     cascade.Step(levels.back(), 1);
 
     auto const refiner = test::MakeRefiner(scene, 2);
-    CascadeLevel const level = far_ext::BuildCascadeLevel(far_ext::MakeCascadeMesh(*refiner, 2), {}, BoundaryRule::Fixed);
+    CascadeLevel const level =
+        far_ext::BuildCascadeLevel(far_ext::MakeCascadeMesh(*refiner, 2), {}, BoundaryRule::Fixed);
     eval::Cascade<double> again(flat, filtered, {.solver = CascadeSolver::Jacobi});
     again.Step(level, 0);
     ASSERT_EQ(level.vertices, levels.back().vertices);
     auto const &found = cascade.GetOperator(), &expected = again.GetOperator();
-    for (size_t k = 0; k < expected.edges.size(); ++k) EXPECT_NEAR(found.edges[k], expected.edges[k], 1e-14);
-    for (size_t i = 0; i < expected.masses.size(); ++i) EXPECT_NEAR(found.masses[i], expected.masses[i], 1e-14);
+    for (size_t k = 0; k < expected.edges.size(); ++k)
+        EXPECT_NEAR(found.edges[k], expected.edges[k], 1e-14);
+    for (size_t i = 0; i < expected.masses.size(); ++i)
+        EXPECT_NEAR(found.masses[i], expected.masses[i], 1e-14);
 }
 
 // ---- creases ------------------------------------------------------------------------------------
 
 void CreaseEdges(engine::Scene& scene, std::vector<std::array<Index, 2>> const& edges) {
     for (auto const& edge : edges) {
-        scene.cage.creaseVertexPairs.insert(scene.cage.creaseVertexPairs.end(), edge.begin(), edge.end());
+        scene.cage.creaseVertexPairs.insert(scene.cage.creaseVertexPairs.end(), edge.begin(),
+                                            edge.end());
         scene.cage.creaseSharpness.push_back(far_ext::kInfiniteSharpness);
     }
 }
 
-// Corners have three creases and stay; along an edge equal steps of a straight line cancel; a coordinate across a plane face is
-// constant or linear on it. So the whole cube stays, which without creases loses a good part of its corners.
+// Corners have three creases and stay; along an edge equal steps of a straight line cancel; a
+// coordinate across a plane face is constant or linear on it. So the whole cube stays, which
+// without creases loses a good part of its corners.
 TEST(CascadeCreases, ACubeOfCreasesStays) {
     auto const smooth = test::MakeCube();
     auto creased = test::MakeCube();
-    CreaseEdges(creased, {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}});
+    CreaseEdges(creased, {{0, 1},
+                          {1, 2},
+                          {2, 3},
+                          {3, 0},
+                          {4, 5},
+                          {5, 6},
+                          {6, 7},
+                          {7, 4},
+                          {0, 4},
+                          {1, 5},
+                          {2, 6},
+                          {3, 7}});
     for (auto const& [solver, tolerance] : kSolvers) {
         CascadeOptions const options{.solver = solver, .tolerance = tolerance, .width = 0.3};
         for (engine::Scene const* scene : {&smooth, static_cast<engine::Scene const*>(&creased)}) {
             auto const levels = QuarterLevels(*scene, 4, BoundaryRule::Fixed);
             eval::Cascade<double> cascade(scene->positions, {}, options);
             for (auto const& level : levels) cascade.Step(level, 20);
-            double const moved = test::LargestDifference(cascade.GetPositions(), cascade.GetStartPositions());
-            if (scene == &creased) EXPECT_LT(moved, 1e-13);
-            else EXPECT_GT(moved, 0.05);
+            double const moved =
+                test::LargestDifference(cascade.GetPositions(), cascade.GetStartPositions());
+            if (scene == &creased)
+                EXPECT_LT(moved, 1e-13);
+            else
+                EXPECT_GT(moved, 0.05);
         }
     }
 }
 
-// A regular n-gon as a crease: edges l = 2 r sin(pi / n), M = l, L X = a / l * 4 sin^2(pi / n) X, hence
-// (1 + a / r_k^2) r = r0, whatever n and whatever surfaces meet there: the cylinder's fixed point.
+// A regular n-gon as a crease: edges l = 2 r sin(pi / n), M = l, L X = a / l * 4 sin^2(pi / n) X,
+// hence (1 + a / r_k^2) r = r0, whatever n and whatever surfaces meet there: the cylinder's fixed
+// point.
 TEST(CascadeCreases, ARegularRimFollowsTheRecursionOfACircle) {
     for (int n : {3, 7, 64}) {
         auto scene = test::MakeBipyramid(n);
@@ -686,10 +809,14 @@ TEST(CascadeCreases, ARegularRimFollowsTheRecursionOfACircle) {
         CascadeLevel const level = far_ext::BuildCascadeLevel(mesh, {}, BoundaryRule::Fixed);
         double const sigma = 0.4, a = sigma * sigma / 2;
         for (auto solver : {CascadeSolver::Exact, CascadeSolver::ConjugateGradients}) {
-            eval::Cascade<double> cascade(scene.positions, {}, {.solver = solver, .tolerance = 1e-14, .width = sigma});
+            eval::Cascade<double> cascade(scene.positions, {},
+                                          {.solver = solver, .tolerance = 1e-14, .width = sigma});
             double r = 1.0;
             for (int k = 0; k < 30; ++k) {
-                if (k == 0) cascade.Step(level, 100); else cascade.Repeat(100);
+                if (k == 0)
+                    cascade.Step(level, 100);
+                else
+                    cascade.Repeat(100);
                 r = 1 / (1 + a / (r * r));
                 for (Index i = 2; i < n + 2; ++i) {
                     EXPECT_NEAR(PointAt(cascade.GetPositions(), i).norm(), r, 1e-11);
@@ -701,8 +828,8 @@ TEST(CascadeCreases, ARegularRimFollowsTheRecursionOfACircle) {
     }
 }
 
-// A closed crease cuts a surface in two: what is done to one side, the crease and the other side do not feel. (Sums of
-// conjugate gradients run over both sides; sweeps and the factorisation do not.)
+// A closed crease cuts a surface in two: what is done to one side, the crease and the other side do
+// not feel. (Sums of conjugate gradients run over both sides; sweeps and the factorisation do not.)
 TEST(CascadeCreases, BothSidesOfAClosedCreaseAreSmoothedOnTheirOwn) {
     auto scene = test::MakeBipyramid(7);
     std::vector<std::array<Index, 2>> rim;
@@ -712,19 +839,25 @@ TEST(CascadeCreases, BothSidesOfAClosedCreaseAreSmoothedOnTheirOwn) {
     auto changed = scene;
     changed.positions[0] = 0.3;  // the upper tip
     changed.positions[2] = 1.5;
-    for (auto [solver, tolerance] : {std::pair{CascadeSolver::Jacobi, 0.0}, {CascadeSolver::Exact, 1e-14}, {CascadeSolver::ConjugateGradients, 1e-9}}) {
+    for (auto [solver, tolerance] : {std::pair{CascadeSolver::Jacobi, 0.0},
+                                     {CascadeSolver::Exact, 1e-14},
+                                     {CascadeSolver::ConjugateGradients, 1e-9}}) {
         std::array<Points, 2> found;
         for (size_t i = 0; i < 2; ++i) {
             auto const& own = i == 0 ? scene : changed;
-            eval::Cascade<double> cascade(own.positions, {}, {.solver = solver, .tolerance = tolerance > 1e-10 ? 1e-12 : 0.0, .width = 0.2});
-            for (auto const& level : levels) cascade.Step(level, solver == CascadeSolver::Jacobi ? 20 : 1000);
+            eval::Cascade<double> cascade(
+                own.positions, {},
+                {.solver = solver, .tolerance = tolerance > 1e-10 ? 1e-12 : 0.0, .width = 0.2});
+            for (auto const& level : levels)
+                cascade.Step(level, solver == CascadeSolver::Jacobi ? 20 : 1000);
             EXPECT_TRUE(AreFinite(cascade.GetPositions()));
             found[i] = cascade.GetPositions();
         }
         int numLower = 0, numUpper = 0;
         for (size_t i = 0; i < found[0].size(); i += 3) {
             bool const isUpper = found[0][i + 2] > 1e-9;
-            for (size_t c = 0; c < 3 && !isUpper; ++c) EXPECT_NEAR(found[0][i + c], found[1][i + c], tolerance);
+            for (size_t c = 0; c < 3 && !isUpper; ++c)
+                EXPECT_NEAR(found[0][i + c], found[1][i + c], tolerance);
             isUpper ? ++numUpper : ++numLower;
         }
         EXPECT_GT(numLower, numUpper);  // the rim counts as lower
@@ -732,7 +865,8 @@ TEST(CascadeCreases, BothSidesOfAClosedCreaseAreSmoothedOnTheirOwn) {
     }
 }
 
-// Surfaces see their creases solved, not as they were before: the residual mode meets the factorisation.
+// Surfaces see their creases solved, not as they were before: the residual mode meets the
+// factorisation.
 TEST(CascadeCreases, SolversAgreeOnSurfacesWithCreases) {
     for (auto const& [name, scene] : test::MakeFormMeshes()) {
         if (scene.cage.creaseSharpness.empty()) continue;
@@ -740,7 +874,9 @@ TEST(CascadeCreases, SolversAgreeOnSurfacesWithCreases) {
         eval::Cascade<double> cascade(scene.positions, {}, {.tolerance = 1e-11, .width = 0.15});
         for (auto const& level : levels) EXPECT_TRUE(cascade.Step(level, 1000).converged) << name;
         auto const exact = Filter(scene, levels, {.solver = CascadeSolver::Exact, .width = 0.15});
-        EXPECT_LT(test::LargestDifference(cascade.GetPositions(), exact), 1e-9 * test::BoxDiagonal(scene.positions)) << name;
+        EXPECT_LT(test::LargestDifference(cascade.GetPositions(), exact),
+                  1e-9 * test::BoxDiagonal(scene.positions))
+            << name;
     }
 }
 
@@ -750,8 +886,10 @@ TEST(CascadeCreases, NothingIsNotANumber) {
         if (scene.cage.creaseSharpness.empty()) continue;
         auto const levels = QuarterLevels(scene, 2, BoundaryRule::Fixed);
         for (auto const& [solver, tolerance] : kSolvers) {
-            eval::Cascade<double> cascade(scene.positions, {}, {.solver = solver, .tolerance = tolerance, .width = 0.2});
-            for (auto const& level : levels) EXPECT_TRUE(std::isfinite(cascade.Step(level, 10).residual)) << name;
+            eval::Cascade<double> cascade(scene.positions, {},
+                                          {.solver = solver, .tolerance = tolerance, .width = 0.2});
+            for (auto const& level : levels)
+                EXPECT_TRUE(std::isfinite(cascade.Step(level, 10).residual)) << name;
             EXPECT_TRUE(AreFinite(cascade.GetPositions())) << name;
         }
     }

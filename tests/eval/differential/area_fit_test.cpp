@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/differential/area_fit.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +24,8 @@ struct Recovery {
         auto deltas = test::Apply(laplacian.rows, truth);
         for (size_t i = 0; i < deltas.size(); ++i) deltas[i] /= laplacian.areas[i / 3];
         positions = truth;
-        for (size_t i = 0; i < positions.size(); ++i) positions[i] *= 1.0 + 0.02 * std::sin(truth[i - i % 3] + truth[i - i % 3 + 1]);
+        for (size_t i = 0; i < positions.size(); ++i)
+            positions[i] *= 1.0 + 0.02 * std::sin(truth[i - i % 3] + truth[i - i % 3 + 1]);
         before = test::LargestDifference(positions, truth, true);
         eval::Multigrid multigrid(*refiner, eval::FixedVertices::Boundary);
         report = eval::FitAreaLaplacian(*refiner, multigrid, build, deltas, positions);
@@ -33,7 +35,9 @@ struct Recovery {
 
 TEST(AreaFit, CotangentCoordinatesGiveTheirShapeBack) {
     Recovery const recovery(3, [](Far::TopologyLevel const& level) {
-        return [level](std::span<double const> p) { return far_ext::BuildCotangentLaplacian(level, p); };
+        return [level](std::span<double const> p) {
+            return far_ext::BuildCotangentLaplacian(level, p);
+        };
     });
     EXPECT_TRUE(recovery.report.converged);
     EXPECT_LT(recovery.report.residual, 0.01 * recovery.report.initialResidual);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/differential/curve.h"
 
 #include <cmath>
@@ -25,25 +26,32 @@ double RadiusOf(Curve const& curve) {
     DoubleLanes mean = DoubleLanes::Zero();
     for (DoubleLanes const& p : curve.points) mean += p / static_cast<double>(curve.points.size());
     double radius = 0.0;
-    for (DoubleLanes const& p : curve.points) radius += std::sqrt((p - mean).square().sum()) / static_cast<double>(curve.points.size());
+    for (DoubleLanes const& p : curve.points)
+        radius += std::sqrt((p - mean).square().sum()) / static_cast<double>(curve.points.size());
     return radius;
 }
 
-// A regular n-gon's differential B-spline has 2 (1 - cos t) / t^2 of the spatial one's radius, t = 2 pi / n.
+// A regular n-gon's differential B-spline has 2 (1 - cos t) / t^2 of the spatial one's radius, t =
+// 2 pi / n.
 TEST(Curve, PolygonsShrinkByAKnownFactor) {
     for (auto const& [n, tolerance] : {std::pair{4, 3e-4}, {6, 3e-5}, {8, 2e-5}, {16, 1e-5}}) {
         Curve spatial = MakePolygon(n);
         eval::CurveReport report;
-        Curve const differential = eval::RefineCurveDifferentially(spatial, CurveRule::CubicBSpline, 6, &report);
-        for (int level = 0; level < 6; ++level) spatial = eval::SubdivideCurve(spatial, CurveRule::CubicBSpline);
+        Curve const differential =
+            eval::RefineCurveDifferentially(spatial, CurveRule::CubicBSpline, 6, &report);
+        for (int level = 0; level < 6; ++level)
+            spatial = eval::SubdivideCurve(spatial, CurveRule::CubicBSpline);
         double const t = 2.0 * std::acos(-1.0) / n;
-        EXPECT_NEAR(RadiusOf(differential) / RadiusOf(spatial), 2.0 * (1.0 - std::cos(t)) / (t * t), tolerance) << n;
+        EXPECT_NEAR(RadiusOf(differential) / RadiusOf(spatial), 2.0 * (1.0 - std::cos(t)) / (t * t),
+                    tolerance)
+            << n;
         EXPECT_LT(report.residual, 1e-10);
         EXPECT_LT(report.compatibilityDefect, 1e-14);
     }
 }
 
-// An open parabola has the same delta everywhere, so it is found again, its ends included, by both rules.
+// An open parabola has the same delta everywhere, so it is found again, its ends included, by both
+// rules.
 TEST(Curve, ParabolasAreReproduced) {
     for (CurveRule rule : {CurveRule::CubicBSpline, CurveRule::FourPoint}) {
         Curve curve;
@@ -67,7 +75,8 @@ TEST(Curve, FourPointInterpolates) {
 }
 
 TEST(Curve, TwoPointsStayALine) {
-    Curve const fine = eval::RefineCurveDifferentially({{{0, 0, 0, 0}, {4, 0, 0, 0}}, false}, CurveRule::FourPoint, 2);
+    Curve const fine = eval::RefineCurveDifferentially({{{0, 0, 0, 0}, {4, 0, 0, 0}}, false},
+                                                       CurveRule::FourPoint, 2);
     ASSERT_EQ(fine.points.size(), 5u);
     for (size_t i = 0; i < 5; ++i) EXPECT_NEAR(fine.points[i][0], static_cast<double>(i), 1e-14);
 }

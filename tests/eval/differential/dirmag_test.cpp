@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/differential/dirmag.h"
 
 #include <gtest/gtest.h>
@@ -18,18 +19,20 @@ struct Reference {
 };
 
 class DirMagOf : public testing::TestWithParam<Reference> {};
-INSTANTIATE_TEST_SUITE_P(References, DirMagOf,
-                         testing::Values(Reference{"icosa", "loop", SubdivisionRule::Scheme},
-                                         Reference{"icosa", "butterfly", SubdivisionRule::Butterfly},
-                                         Reference{"torustri", "loop", SubdivisionRule::Scheme},
-                                         Reference{"torustri", "butterfly", SubdivisionRule::Butterfly}));
+INSTANTIATE_TEST_SUITE_P(
+    References, DirMagOf,
+    testing::Values(Reference{"icosa", "loop", SubdivisionRule::Scheme},
+                    Reference{"icosa", "butterfly", SubdivisionRule::Butterfly},
+                    Reference{"torustri", "loop", SubdivisionRule::Scheme},
+                    Reference{"torustri", "butterfly", SubdivisionRule::Butterfly}));
 
 // The first level by direction and magnitude, the second linearly, then reconstruction.
 TEST_P(DirMagOf, TheReferenceIsMet) {
     auto const& [mesh, rule, subdivision] = GetParam();
     auto const scene = test::LoadDifferential(mesh, Sdc::SCHEME_LOOP);
     auto const refiner = test::MakeRefiner(scene, 2);
-    auto const base = test::Apply(far_ext::BuildCombinatorialLaplacian(refiner->GetLevel(0)), scene.positions);
+    auto const base =
+        test::Apply(far_ext::BuildCombinatorialLaplacian(refiner->GetLevel(0)), scene.positions);
     auto const split = eval::SplitDirMag(refiner->GetLevel(0), scene.positions, base);
     auto const rows = far_ext::BuildSubdivisionRows(*refiner, 1, subdivision);
     auto deltas = eval::JoinDirMag(eval::SubdivideDirMag(rows, split));
@@ -38,13 +41,15 @@ TEST_P(DirMagOf, TheReferenceIsMet) {
     std::vector<double> positions(deltas.size(), 0.0);
     eval::Reconstructor(*refiner).Solve(deltas, positions, {.tolerance = 1e-12});
     auto const reference = test::LoadPoints(std::string(mesh) + "_dss_" + rule + "_dm1_L2");
-    EXPECT_LT(test::LargestDifference(positions, reference, true), 1e-8 * test::BoxDiagonal(scene.positions));
+    EXPECT_LT(test::LargestDifference(positions, reference, true),
+              1e-8 * test::BoxDiagonal(scene.positions));
 }
 
 TEST(DirMag, ThePartsMakeTheWhole) {
     auto const scene = test::MakeFan(5, Sdc::SCHEME_LOOP, 0.2, 0.3);
     auto const refiner = test::MakeRefiner(scene, 0);
-    auto const deltas = test::Apply(far_ext::BuildCombinatorialLaplacian(refiner->GetLevel(0)), scene.positions);
+    auto const deltas =
+        test::Apply(far_ext::BuildCombinatorialLaplacian(refiner->GetLevel(0)), scene.positions);
     auto const split = eval::SplitDirMag(refiner->GetLevel(0), scene.positions, deltas);
     EXPECT_LT(test::LargestDifference(eval::JoinDirMag(split), deltas), 1e-14);
 }
@@ -53,11 +58,14 @@ TEST(DirMag, ThePartsMakeTheWhole) {
 TEST(DirMag, TheTangentialShareIsMeasured) {
     auto const scene = test::LoadDifferential("torustri", Sdc::SCHEME_LOOP);
     auto const refiner = test::MakeRefiner(scene, 0);
-    auto const deltas = test::Apply(far_ext::BuildCombinatorialLaplacian(refiner->GetLevel(0)), scene.positions);
-    EXPECT_NEAR(eval::SplitDirMag(refiner->GetLevel(0), scene.positions, deltas).tangentialShare, 0.51, 0.02);
+    auto const deltas =
+        test::Apply(far_ext::BuildCombinatorialLaplacian(refiner->GetLevel(0)), scene.positions);
+    EXPECT_NEAR(eval::SplitDirMag(refiner->GetLevel(0), scene.positions, deltas).tangentialShare,
+                0.51, 0.02);
 }
 
-// Directions that cancel have no mean: the one of the largest weight stays, and nothing is not a number.
+// Directions that cancel have no mean: the one of the largest weight stays, and nothing is not a
+// number.
 TEST(DirMag, OppositeDirectionsHaveAnAnswer) {
     far_ext::SparseRows rows;
     far_ext::WeightRow row;

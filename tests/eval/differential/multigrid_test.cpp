@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/differential/multigrid.h"
 
 #include <random>
@@ -23,7 +24,8 @@ Matrix MatrixOf(MultigridLevel const& level) {
     for (Index row = 0; row < level.numUnknowns; ++row) {
         entries.emplace_back(row, row, level.offsets[row + 1] - level.offsets[row]);
         for (int k = level.offsets[row]; k < level.offsets[row + 1]; ++k) {
-            if (level.neighbours[k] < level.numUnknowns) entries.emplace_back(row, level.neighbours[k], -1.0);
+            if (level.neighbours[k] < level.numUnknowns)
+                entries.emplace_back(row, level.neighbours[k], -1.0);
         }
     }
     Matrix matrix(level.numUnknowns, level.numUnknowns);
@@ -52,29 +54,33 @@ std::vector<double> RandomValues(size_t count, unsigned seed) {
 }
 
 std::vector<engine::Scene> TriangleMeshes() {
-    std::vector<engine::Scene> scenes{test::MakeTriangleTorus(6, 5), test::MakeFan(7, Sdc::SCHEME_LOOP, 0.1, 0.05)};
+    std::vector<engine::Scene> scenes{test::MakeTriangleTorus(6, 5),
+                                      test::MakeFan(7, Sdc::SCHEME_LOOP, 0.1, 0.05)};
     for (int n = 3; n <= 12; ++n) scenes.push_back(test::MakeBipyramid(n));
-    for (char const* name : {"icosa", "gridholetri"}) scenes.push_back(test::LoadDifferential(name, Sdc::SCHEME_LOOP));
+    for (char const* name : {"icosa", "gridholetri"})
+        scenes.push_back(test::LoadDifferential(name, Sdc::SCHEME_LOOP));
     return scenes;
 }
 
-// Each coarse edge is two halves and the two middle edges beside it, each with half of the difference:
-// 4 x 1/4 = 1. Inside a fixed boundary as well.
+// Each coarse edge is two halves and the two middle edges beside it, each with half of the
+// difference: 4 x 1/4 = 1. Inside a fixed boundary as well.
 TEST(MultigridLevels, TheCoarseEquationIsGalerkinsOnTriangles) {
     for (auto const& scene : TriangleMeshes()) {
         auto const refiner = test::MakeRefiner(scene, 3);
         auto const levels = eval::BuildMultigridLevels(*refiner, FixedVertices::Boundary);
         for (size_t k = 1; k < levels.size(); ++k) {
             Matrix const P = ProlongationOf(levels[k - 1], levels[k]);
-            Matrix const difference = Matrix(P.transpose() * MatrixOf(levels[k]) * P) - MatrixOf(levels[k - 1]);
-            EXPECT_LT(difference.norm(), 1e-12) << scene.cage.numVertices << " vertices, level " << k;
+            Matrix const difference =
+                Matrix(P.transpose() * MatrixOf(levels[k]) * P) - MatrixOf(levels[k - 1]);
+            EXPECT_LT(difference.norm(), 1e-12)
+                << scene.cage.numVertices << " vertices, level " << k;
         }
     }
 }
 
 /// The largest difference of G x and b over the unknowns.
-double LargestDefect(Far::TopologyRefiner const& refiner, MultigridLevel const& graph, std::vector<double> const& b,
-                     std::vector<double> const& x) {
+double LargestDefect(Far::TopologyRefiner const& refiner, MultigridLevel const& graph,
+                     std::vector<double> const& b, std::vector<double> const& x) {
     auto const level = refiner.GetLevel(refiner.GetMaxLevel());
     double worst = 0.0;
     for (Index row = 0; row < graph.numUnknowns; ++row) {
@@ -83,7 +89,8 @@ double LargestDefect(Far::TopologyRefiner const& refiner, MultigridLevel const& 
             double defect = b[3 * static_cast<size_t>(vertex) + c];
             for (Index edge : level.GetVertexEdges(vertex)) {
                 Index const other = far_ext::GetOtherEnd(level, edge, vertex);
-                defect -= x[3 * static_cast<size_t>(vertex) + c] - x[3 * static_cast<size_t>(other) + c];
+                defect -=
+                    x[3 * static_cast<size_t>(vertex) + c] - x[3 * static_cast<size_t>(other) + c];
             }
             worst = std::max(worst, std::abs(defect));
         }
@@ -98,16 +105,20 @@ struct Case {
 };
 
 std::vector<Case> AllCases() {
-    std::vector<Case> cases{{"regular torus", test::MakeTriangleTorus(16, 12), 4, 10},
-                            {"quad torus", test::MakeTorus(16, 12), 4, 10},
-                            {"cube", test::MakeCube(), 5, 14},
-                            {"grid with a hole", test::LoadDifferential("gridholetri", Sdc::SCHEME_LOOP), 4, 14},
-                            {"quads round a vertex of valence 12", test::MakeFan(12, Sdc::SCHEME_CATMARK, 0.1, 0.0), 4, 14}};
-    for (int n : {3, 4, 5, 7, 8, 10, 12}) cases.push_back({"bipyramid", test::MakeBipyramid(n), 6, 14});
+    std::vector<Case> cases{
+        {"regular torus", test::MakeTriangleTorus(16, 12), 4, 10},
+        {"quad torus", test::MakeTorus(16, 12), 4, 10},
+        {"cube", test::MakeCube(), 5, 14},
+        {"grid with a hole", test::LoadDifferential("gridholetri", Sdc::SCHEME_LOOP), 4, 14},
+        {"quads round a vertex of valence 12", test::MakeFan(12, Sdc::SCHEME_CATMARK, 0.1, 0.0), 4,
+         14}};
+    for (int n : {3, 4, 5, 7, 8, 10, 12})
+        cases.push_back({"bipyramid", test::MakeBipyramid(n), 6, 14});
     return cases;
 }
 
-// Fixed vertices keep their values and their neighbours see them; b is projected where constants are free.
+// Fixed vertices keep their values and their neighbours see them; b is projected where constants
+// are free.
 TEST(Multigrid, SolvesWithinFewIterations) {
     for (auto const& [name, scene, numLevels, maxIterations] : AllCases()) {
         auto const refiner = test::MakeRefiner(scene, numLevels);
@@ -137,7 +148,8 @@ TEST(Multigrid, SolvesWithinFewIterations) {
 
 // A boundary that is free: constants, too, are, and the transfer still serves.
 TEST(Multigrid, AFreeBoundaryConverges) {
-    for (auto const& scene : {test::LoadDifferential("gridholetri", Sdc::SCHEME_LOOP), test::MakeFan(6, Sdc::SCHEME_CATMARK, 0.1, 0.0)}) {
+    for (auto const& scene : {test::LoadDifferential("gridholetri", Sdc::SCHEME_LOOP),
+                              test::MakeFan(6, Sdc::SCHEME_CATMARK, 0.1, 0.0)}) {
         auto const refiner = test::MakeRefiner(scene, 4);
         eval::Multigrid multigrid(*refiner, FixedVertices::None);
         auto const size = 3 * static_cast<size_t>(refiner->GetLevel(4).GetNumVertices());
@@ -155,7 +167,8 @@ TEST(Multigrid, AgreesWithCholesky) {
     std::vector<eval::EdgeWeights> weights(4);
     for (int k = 0; k <= 3; ++k) {
         auto const level = refiner->GetLevel(k);
-        for (Index edge = 0; edge < level.GetNumEdges(); ++edge) weights[k].edges.push_back(1.0 + 0.3 * (edge % 3));
+        for (Index edge = 0; edge < level.GetNumEdges(); ++edge)
+            weights[k].edges.push_back(1.0 + 0.3 * (edge % 3));
         weights[k].masses.assign(static_cast<size_t>(level.GetNumVertices()), 0.5 / (1 << 2 * k));
     }
     auto const level = refiner->GetLevel(3);
@@ -169,11 +182,13 @@ TEST(Multigrid, AgreesWithCholesky) {
             entries.emplace_back(i, j, -w);
         }
     }
-    for (Index v = 0; v < level.GetNumVertices(); ++v) entries.emplace_back(v, v, weights[3].masses[v]);
+    for (Index v = 0; v < level.GetNumVertices(); ++v)
+        entries.emplace_back(v, v, weights[3].masses[v]);
     G.setFromTriplets(entries.begin(), entries.end());
     auto const b = RandomValues(3 * static_cast<size_t>(level.GetNumVertices()), 3);
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> const cholesky(G);
-    Eigen::MatrixXd const reference = cholesky.solve(Eigen::Map<Eigen::Matrix<double, -1, 3, Eigen::RowMajor> const>(b.data(), G.rows(), 3));
+    Eigen::MatrixXd const reference = cholesky.solve(
+        Eigen::Map<Eigen::Matrix<double, -1, 3, Eigen::RowMajor> const>(b.data(), G.rows(), 3));
 
     eval::Multigrid multigrid(*refiner, FixedVertices::None);
     multigrid.SetWeights(*refiner, weights);
@@ -182,7 +197,8 @@ TEST(Multigrid, AgreesWithCholesky) {
     EXPECT_TRUE(report.converged);
     EXPECT_LE(report.iterations, 25);
     for (Index v = 0; v < level.GetNumVertices(); ++v) {
-        for (Index c = 0; c < 3; ++c) EXPECT_NEAR(x[3 * static_cast<size_t>(v) + c], reference(v, c), 1e-9);
+        for (Index c = 0; c < 3; ++c)
+            EXPECT_NEAR(x[3 * static_cast<size_t>(v) + c], reference(v, c), 1e-9);
     }
 }
 
@@ -192,7 +208,8 @@ TEST(Multigrid, TheBitsDoNotDependOnThreads) {
     auto const size = 3 * static_cast<size_t>(refiner->GetLevel(6).GetNumVertices());
     std::vector<std::vector<double>> results;
     for (int threads : {1, 2, 3}) {
-        tbb::global_control const limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
+        tbb::global_control const limit(tbb::global_control::max_allowed_parallelism,
+                                        static_cast<size_t>(threads));
         tbb::task_arena arena(threads);
         arena.execute([&] {
             eval::Multigrid multigrid(*refiner, FixedVertices::None);
@@ -206,7 +223,8 @@ TEST(Multigrid, TheBitsDoNotDependOnThreads) {
 }
 
 TEST(Multigrid, NothingToDoIsDone) {
-    auto const refiner = test::MakeRefiner(test::MakeScene({0, 0, 0, 1, 0, 0, 0, 1, 0}, {{0, 1, 2}}, Sdc::SCHEME_LOOP), 0);
+    auto const refiner = test::MakeRefiner(
+        test::MakeScene({0, 0, 0, 1, 0, 0, 0, 1, 0}, {{0, 1, 2}}, Sdc::SCHEME_LOOP), 0);
     eval::Multigrid multigrid(*refiner, FixedVertices::Boundary);
     std::vector<double> x(9, 2.0);
     auto const report = multigrid.Solve(std::vector<double>(9, 1.0), x);
@@ -218,7 +236,8 @@ TEST(Multigrid, NothingToDoIsDone) {
 TEST(Multigrid, WeightsThatDoNotFitAreRefused) {
     auto const refiner = test::MakeRefiner(test::MakeBipyramid(5), 1);
     eval::Multigrid multigrid(*refiner, FixedVertices::None);
-    EXPECT_EQ(test::CodeOf([&] { multigrid.SetWeights(*refiner, {}); }), static_cast<int>(ErrorCode::BadOption));
+    EXPECT_EQ(test::CodeOf([&] { multigrid.SetWeights(*refiner, {}); }),
+              static_cast<int>(ErrorCode::BadOption));
 }
 
 }  // namespace

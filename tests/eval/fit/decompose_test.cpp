@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/fit/decompose.h"
 
 #include <cmath>
@@ -22,7 +23,8 @@ Rows ToRows(std::vector<double> const& values) {
     return Eigen::Map<Rows const>(values.data(), static_cast<Eigen::Index>(values.size()) / 3, 3);
 }
 
-eval::LimitOperator MakeOperator(engine::Scene const& scene, far_ext::LimitOptions const& options = {}) {
+eval::LimitOperator MakeOperator(engine::Scene const& scene,
+                                 far_ext::LimitOptions const& options = {}) {
     return eval::LimitOperator::Build(*far_ext::CreateRefiner(scene.cage), 0, options);
 }
 
@@ -31,7 +33,8 @@ MatrixXd MakeMatrix(engine::Scene const& scene) {
 }
 
 std::vector<engine::Scene> MakeScenes() {
-    std::vector<engine::Scene> scenes{test::MakeTorus(9, 7), test::MakeTriangleTorus(8, 6), test::MakeGridWithHole(5, 4), test::MakeCube()};
+    std::vector<engine::Scene> scenes{test::MakeTorus(9, 7), test::MakeTriangleTorus(8, 6),
+                                      test::MakeGridWithHole(5, 4), test::MakeCube()};
     scenes.push_back(test::LoadData("opensubdiv_shapes/catmark_cubes_semisharp.obj"));
     for (auto& scene : scenes) test::AddNoise(scene, 0.1, 2);
     return scenes;
@@ -93,18 +96,22 @@ TEST(Decompose, FiltersMoveWithTheMesh) {
         std::vector<double> moved = scene.positions;
         for (size_t i = 0; i < moved.size(); ++i) moved[i] += i % 3 == 0 ? 3.0 : -1.0;
         auto const still = run(scene.positions), after = run(moved);
-        for (size_t i = 0; i < moved.size(); ++i) ASSERT_NEAR(after[i], still[i] + (i % 3 == 0 ? 3.0 : -1.0), 1e-12);
+        for (size_t i = 0; i < moved.size(); ++i)
+            ASSERT_NEAR(after[i], still[i] + (i % 3 == 0 ? 3.0 : -1.0), 1e-12);
     }
 }
 
-// Q = M + (1,0,0): the constant difference is an eigenvector of D with eigenvalue 1; rho^k of it is left.
+// Q = M + (1,0,0): the constant difference is an eigenvector of D with eigenvalue 1; rho^k of it is
+// left.
 TEST(Decompose, MorphKeepsRhoToTheKOfAConstantDifference) {
     engine::Scene const to = test::MakeTorus(9, 7);
     engine::Scene from = to;
     for (size_t i = 0; i < from.positions.size(); i += 3) from.positions[i] += 1.0;
-    engine::Morph(from, to, MakeOperator(to), 2, 0.8, 5, [&](int step, std::vector<double> const& Q) {
-        for (size_t i = 0; i < Q.size(); ++i) ASSERT_NEAR(Q[i] - to.positions[i], i % 3 == 0 ? std::pow(0.8, step) : 0.0, 1e-13);
-    });
+    engine::Morph(
+        from, to, MakeOperator(to), 2, 0.8, 5, [&](int step, std::vector<double> const& Q) {
+            for (size_t i = 0; i < Q.size(); ++i)
+                ASSERT_NEAR(Q[i] - to.positions[i], i % 3 == 0 ? std::pow(0.8, step) : 0.0, 1e-13);
+        });
     std::vector<double> Q = from.positions;
     eval::MorphStep(MakeOperator(to), 3, 2, 1.0, to.positions, Q);
     for (size_t i = 0; i < Q.size(); ++i) ASSERT_NEAR(Q[i], from.positions[i], 1e-13);
@@ -113,7 +120,8 @@ TEST(Decompose, MorphKeepsRhoToTheKOfAConstantDifference) {
 TEST(Decompose, MorphRefusesAnotherTopologyAndNamesTheFace) {
     engine::Scene const to = test::MakeTorus(9, 7);
     auto const refusal = [&](engine::Scene const& from) {
-        return test::RefusalOf([&] { engine::Morph(from, to, MakeOperator(to), 2, 0.8, 1, [](int, auto const&) {}); });
+        return test::RefusalOf(
+            [&] { engine::Morph(from, to, MakeOperator(to), 2, 0.8, 1, [](int, auto const&) {}); });
     };
     EXPECT_NE(refusal(test::MakeTorus(7, 9)).find("face 0 "), std::string::npos);
     EXPECT_NE(refusal(test::MakeCube()).find("8 and 63 vertices"), std::string::npos);
@@ -146,7 +154,9 @@ TEST(Decompose, GoldenResults) {
             scene.cage.scheme = variant.scheme;
             auto const A = MakeOperator(scene, variant.options);
             auto const expect = [&](std::vector<double> const& x, std::string const& suffix) {
-                EXPECT_LT((ToRows(x) - test::LoadGoldenPoints(golden + suffix)).cwiseAbs().maxCoeff(), 1e-12);
+                EXPECT_LT(
+                    (ToRows(x) - test::LoadGoldenPoints(golden + suffix)).cwiseAbs().maxCoeff(),
+                    1e-12);
                 ++numCompared;
             };
             std::vector<double> x = scene.positions;
@@ -157,7 +167,8 @@ TEST(Decompose, GoldenResults) {
             expect(x, "_sharpen_m2n4k1.obj");
             engine::Scene from = scene;
             for (size_t i = 0; i < x.size(); i += 3) {
-                for (size_t c = 0; c < 3; ++c) from.positions[i + c] += 0.1 * scene.positions[i + (c + 1) % 3];
+                for (size_t c = 0; c < 3; ++c)
+                    from.positions[i + c] += 0.1 * scene.positions[i + (c + 1) % 3];
             }
             engine::Morph(from, scene, A, 2, 0.8, 3, [&](int step, std::vector<double> const& Q) {
                 if (step == 3) expect(Q, "_morph_m2r80k3.obj");

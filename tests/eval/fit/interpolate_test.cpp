@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/fit/interpolate.h"
 
 #include <cmath>
@@ -27,7 +28,8 @@ using far_ext::LimitOptions;
 using Rows = Eigen::Matrix<double, -1, -1, Eigen::RowMajor>;
 
 Rows ToRows(std::vector<double> const& values, int length = 3) {
-    return Eigen::Map<Rows const>(values.data(), static_cast<Eigen::Index>(values.size()) / length, length);
+    return Eigen::Map<Rows const>(values.data(), static_cast<Eigen::Index>(values.size()) / length,
+                                  length);
 }
 
 struct Fit {
@@ -35,7 +37,8 @@ struct Fit {
     SolveReport report;
 };
 
-Fit Solve(engine::Scene const& scene, InterpolateOptions const& options = {}, LimitOptions const& limit = {}) {
+Fit Solve(engine::Scene const& scene, InterpolateOptions const& options = {},
+          LimitOptions const& limit = {}) {
     auto const refiner = far_ext::CreateRefiner(scene.cage);
     Fit fit{std::vector<double>(scene.positions.size()), {}};
     fit.report = Interpolator(*refiner, 0, limit).Solve(scene.positions, 3, fit.P, options);
@@ -43,7 +46,8 @@ Fit Solve(engine::Scene const& scene, InterpolateOptions const& options = {}, Li
 }
 
 /// max |M - A P| over the diagonal, by the explicit matrix.
-double FindMiss(engine::Scene const& scene, std::vector<double> const& P, LimitOptions const& limit = {}) {
+double FindMiss(engine::Scene const& scene, std::vector<double> const& P,
+                LimitOptions const& limit = {}) {
     auto const refiner = far_ext::CreateRefiner(scene.cage);
     auto const A = far_ext::LimitMatrix::Build(*refiner, 0, limit);
     Rows const miss = ToRows(scene.positions) - A.AsMatrix() * ToRows(P);
@@ -68,13 +72,16 @@ engine::Scene MakeIrregularQuads() {
     return test::Refine(triangles, 1);
 }
 
-SolveMethod const kAllMethods[] = {SolveMethod::Automatic, SolveMethod::Progressive,        SolveMethod::Weighted,
-                                   SolveMethod::Chebyshev, SolveMethod::ConjugateGradients, SolveMethod::Direct};
+SolveMethod const kAllMethods[] = {SolveMethod::Automatic,          SolveMethod::Progressive,
+                                   SolveMethod::Weighted,           SolveMethod::Chebyshev,
+                                   SolveMethod::ConjugateGradients, SolveMethod::Direct};
 
 // -------- the operator
 
 TEST(LimitOperator, IsTheLimitMatrixOnEveryKindOfMesh) {
-    std::vector<engine::Scene> scenes{test::MakeTorus(7, 5), test::MakeTriangleTorus(7, 5), MakeIrregularQuads(), test::MakeGridWithHole(7, 6), test::MakePrism(5)};
+    std::vector<engine::Scene> scenes{test::MakeTorus(7, 5), test::MakeTriangleTorus(7, 5),
+                                      MakeIrregularQuads(), test::MakeGridWithHole(7, 6),
+                                      test::MakePrism(5)};
     for (std::string const& name : test::ListData("opensubdiv_shapes")) {
         scenes.push_back(test::LoadData("opensubdiv_shapes/" + name));
         if (name.starts_with("loop")) scenes.back().cage.scheme = Sdc::SCHEME_LOOP;
@@ -83,13 +90,16 @@ TEST(LimitOperator, IsTheLimitMatrixOnEveryKindOfMesh) {
         SCOPED_TRACE(scene.path);
         auto const refiner = far_ext::CreateRefiner(scene.cage);
         auto const A = eval::LimitOperator::Build(*refiner);
-        Rows const limit = far_ext::LimitMatrix::Build(*refiner).AsMatrix() * ToRows(scene.positions);
+        Rows const limit =
+            far_ext::LimitMatrix::Build(*refiner).AsMatrix() * ToRows(scene.positions);
         for (int length = 1; length <= 4; ++length) {
             Rows values = Rows::Random(scene.cage.numVertices, length);
-            values.leftCols(std::min(length, 3)) = ToRows(scene.positions).leftCols(std::min(length, 3));
+            values.leftCols(std::min(length, 3)) =
+                ToRows(scene.positions).leftCols(std::min(length, 3));
             std::vector<double> y(static_cast<size_t>(values.size()));
             A.Apply({values.data(), y.size()}, length, y);
-            Rows const difference = ToRows(y, length).leftCols(std::min(length, 3)) - limit.leftCols(std::min(length, 3));
+            Rows const difference = ToRows(y, length).leftCols(std::min(length, 3)) -
+                                    limit.leftCols(std::min(length, 3));
             ASSERT_LT(difference.cwiseAbs().maxCoeff(), 1e-13 * eval::FindSize(scene.positions, 3));
         }
     }
@@ -105,13 +115,18 @@ TEST(LimitOperator, TakesThirtyEightBytesPerVertexAmongQuads) {
 
 double SmallestEigenvalue(engine::Scene const& scene, LimitOptions const& limit = {}) {
     auto const A = far_ext::LimitMatrix::Build(*far_ext::CreateRefiner(scene.cage), 0, limit);
-    VectorXd const root = Eigen::Map<VectorXd const>(A.GetScales().data(), A.GetNumStencils()).cwiseSqrt();
-    MatrixXd const S = root.asDiagonal() * MatrixXd(A.AsMatrix()) * root.cwiseInverse().asDiagonal();
-    return Eigen::SelfAdjointEigenSolver<MatrixXd>(0.5 * (S + S.transpose()), Eigen::EigenvaluesOnly).eigenvalues()[0];
+    VectorXd const root =
+        Eigen::Map<VectorXd const>(A.GetScales().data(), A.GetNumStencils()).cwiseSqrt();
+    MatrixXd const S =
+        root.asDiagonal() * MatrixXd(A.AsMatrix()) * root.cwiseInverse().asDiagonal();
+    return Eigen::SelfAdjointEigenSolver<MatrixXd>(0.5 * (S + S.transpose()),
+                                                   Eigen::EigenvaluesOnly)
+        .eigenvalues()[0];
 }
 
 TEST(Spectrum, HasTheKnownSmallestEigenvalues) {
-    EXPECT_NEAR(SmallestEigenvalue(test::MakeTorus(12, 8)), 1.0 / 9.0, 1e-12);  // even sides: attained
+    EXPECT_NEAR(SmallestEigenvalue(test::MakeTorus(12, 8)), 1.0 / 9.0,
+                1e-12);  // even sides: attained
     EXPECT_NEAR(SmallestEigenvalue(test::MakeQuadSphere(1)), 0.0779, 1e-4);
     EXPECT_NEAR(SmallestEigenvalue(test::MakeCube()), 0.0, 1e-14);
     EXPECT_NEAR(SmallestEigenvalue(test::MakePrism(6)), 0.0, 1e-14);
@@ -122,10 +137,13 @@ TEST(Spectrum, HasTheKnownSmallestEigenvalues) {
 }
 
 TEST(Spectrum, IsBoundedByValencesAndEstimatedFromAbove) {
-    for (engine::Scene const& scene : {test::MakeTorus(12, 8), test::MakeQuadSphere(2), MakeIrregularQuads(), test::MakeIcosphere(2), test::MakeBipyramid(7), test::MakePrism(5)}) {
+    for (engine::Scene const& scene :
+         {test::MakeTorus(12, 8), test::MakeQuadSphere(2), MakeIrregularQuads(),
+          test::MakeIcosphere(2), test::MakeBipyramid(7), test::MakePrism(5)}) {
         if (scene.cage.numVertices > 2000) continue;
         Interpolator const interpolator(*far_ext::CreateRefiner(scene.cage));
-        double const exact = SmallestEigenvalue(scene), estimate = interpolator.EstimateSmallestEigenvalue();
+        double const exact = SmallestEigenvalue(scene),
+                     estimate = interpolator.EstimateSmallestEigenvalue();
         EXPECT_LE(interpolator.GetOperator().GetEigenvalueBound(), exact + 1e-12);
         EXPECT_GE(estimate, exact - 1e-10);
         EXPECT_LE(estimate, 1.05 * exact);
@@ -135,12 +153,16 @@ TEST(Spectrum, IsBoundedByValencesAndEstimatedFromAbove) {
 // -------- solving
 
 TEST(Interpolator, EveryMethodMeetsTheDirectSolution) {
-    for (engine::Scene const& scene : {Noisy(test::MakeTorus(12, 8)), Noisy(test::MakeQuadSphere(2)), Noisy(test::MakeIcosphere(2)), Noisy(test::MakeGridWithHole(7, 6)), Noisy(test::MakePrism(5))}) {
+    for (engine::Scene const& scene :
+         {Noisy(test::MakeTorus(12, 8)), Noisy(test::MakeQuadSphere(2)),
+          Noisy(test::MakeIcosphere(2)), Noisy(test::MakeGridWithHole(7, 6)),
+          Noisy(test::MakePrism(5))}) {
         Fit const exact = Solve(scene, {.method = SolveMethod::Direct});
         EXPECT_LT(FindMiss(scene, exact.P), 1e-14);
         for (SolveMethod method : kAllMethods) {
             SCOPED_TRACE(GetName(method));
-            Fit const fit = Solve(scene, {.method = method, .tolerance = 1e-11, .maxIterations = 2000});
+            Fit const fit =
+                Solve(scene, {.method = method, .tolerance = 1e-11, .maxIterations = 2000});
             EXPECT_TRUE(fit.report.converged);
             EXPECT_LE(fit.report.residual, 1e-11);
             EXPECT_NEAR(FindMiss(scene, fit.P), fit.report.residual, 1e-13);
@@ -159,8 +181,10 @@ TEST(Interpolator, FitsEveryKindOfMesh) {
         Fit const fit = Solve(scene, {.tolerance = 1e-10});
         // Single precision has moved the car's boxes off the range of A; what misses is theirs.
         double defect = 0.0;
-        for (auto const& component : fit.report.singularComponents) defect = std::max(defect, component.defect);
-        EXPECT_EQ(fit.report.converged, defect < 0.5e-10) << fit.report.residual << " after " << fit.report.iterations;
+        for (auto const& component : fit.report.singularComponents)
+            defect = std::max(defect, component.defect);
+        EXPECT_EQ(fit.report.converged, defect < 0.5e-10)
+            << fit.report.residual << " after " << fit.report.iterations;
         EXPECT_LE(FindMiss(scene, fit.P), std::max(1.01e-10, 1.001 * defect));
         EXPECT_TRUE(Solve(scene).report.converged);
     }
@@ -173,14 +197,21 @@ struct Row {
 };
 
 /// Applications of A until P is that near; the solver stops after so many.
-int CountApplications(Interpolator const& interpolator, engine::Scene const& scene, std::vector<double> const& exact, SolveMethod method, double error, double lambda) {
+int CountApplications(Interpolator const& interpolator, engine::Scene const& scene,
+                      std::vector<double> const& exact, SolveMethod method, double error,
+                      double lambda) {
     std::vector<double> P(scene.positions.size());
-    int low = 1, high = 400;  // the error falls with the number, but for ripples that do not matter here
+    int low = 1,
+        high = 400;  // the error falls with the number, but for ripples that do not matter here
     while (low < high) {
         int const middle = (low + high) / 2;
-        interpolator.Solve(scene.positions, 3, P, {.method = method, .tolerance = 1e-15, .maxIterations = middle, .lambdaMin = lambda});
-        if (FindError(P, exact) <= error) high = middle;
-        else low = middle + 1;
+        interpolator.Solve(
+            scene.positions, 3, P,
+            {.method = method, .tolerance = 1e-15, .maxIterations = middle, .lambdaMin = lambda});
+        if (FindError(P, exact) <= error)
+            high = middle;
+        else
+            low = middle + 1;
     }
     return low;
 }
@@ -200,14 +231,22 @@ TEST(Interpolator, NeedsNoMoreApplicationsThanTheTheorySays) {
         engine::Scene const scene = Noisy(row.scene);
         Interpolator const interpolator(*far_ext::CreateRefiner(scene.cage));
         std::vector<double> exact(scene.positions.size());
-        ASSERT_TRUE(interpolator.Solve(scene.positions, 3, exact, {.method = SolveMethod::ConjugateGradients, .tolerance = 1e-14}).converged);
+        ASSERT_TRUE(interpolator
+                        .Solve(scene.positions, 3, exact,
+                               {.method = SolveMethod::ConjugateGradients, .tolerance = 1e-14})
+                        .converged);
         double const lambda = interpolator.EstimateSmallestEigenvalue();
         double const kappa = 1.0 / lambda, root = std::sqrt(kappa);
-        for (auto const& [error, most] : {std::pair{1e-6, row.chebyshev6}, {1e-10, row.chebyshev10}}) {
-            for (SolveMethod method : {SolveMethod::Automatic, SolveMethod::Chebyshev, SolveMethod::ConjugateGradients}) {
+        for (auto const& [error, most] :
+             {std::pair{1e-6, row.chebyshev6}, {1e-10, row.chebyshev10}}) {
+            for (SolveMethod method : {SolveMethod::Automatic, SolveMethod::Chebyshev,
+                                       SolveMethod::ConjugateGradients}) {
                 int const count = CountApplications(interpolator, scene, exact, method, error, 0.0);
                 EXPECT_LE(count, most) << GetName(method) << " to " << error;
-                EXPECT_LE(count, std::log(2.0 / error * kappa) / std::log((root + 1.0) / (root - 1.0)) + 2.0) << GetName(method) << " to " << error;
+                EXPECT_LE(
+                    count,
+                    std::log(2.0 / error * kappa) / std::log((root + 1.0) / (root - 1.0)) + 2.0)
+                    << GetName(method) << " to " << error;
             }
         }
     }
@@ -218,7 +257,9 @@ TEST(Interpolator, PlainIterationShrinksBySmallestEigenvalue) {
     engine::Scene const scene = Noisy(test::MakeQuadSphere(1));
     Interpolator const interpolator(*far_ext::CreateRefiner(scene.cage));
     std::vector<double> const exact = Solve(scene, {.method = SolveMethod::Direct}).P;
-    auto const count = [&](double error) { return CountApplications(interpolator, scene, exact, SolveMethod::Progressive, error, 0.0); };
+    auto const count = [&](double error) {
+        return CountApplications(interpolator, scene, exact, SolveMethod::Progressive, error, 0.0);
+    };
     int const early = count(1e-6), late = count(1e-10);
     double const rate = std::pow(1e-4, 1.0 / (late - early));
     EXPECT_NEAR(rate, 1.0 - SmallestEigenvalue(scene), 0.01);
@@ -227,8 +268,14 @@ TEST(Interpolator, PlainIterationShrinksBySmallestEigenvalue) {
 TEST(Interpolator, GoldenSteps) {
     for (std::string const name : {"cube", "icosa", "torustri", "gridholetri"}) {
         for (std::string const scheme : {"cc", "loop"}) {
-            for (auto const& [suffix, options] : {std::pair<std::string, InterpolateOptions>{"it10", {.method = SolveMethod::Progressive, .tolerance = 1e-16, .maxIterations = 10}}, {"exact", {.tolerance = 1e-13}}}) {
-                std::string const golden = "golden_surface/" + name + "_pi_" + scheme + "_" + suffix + ".obj";
+            for (auto const& [suffix, options] :
+                 {std::pair<std::string, InterpolateOptions>{"it10",
+                                                             {.method = SolveMethod::Progressive,
+                                                              .tolerance = 1e-16,
+                                                              .maxIterations = 10}},
+                  {"exact", {.tolerance = 1e-13}}}) {
+                std::string const golden =
+                    "golden_surface/" + name + "_pi_" + scheme + "_" + suffix + ".obj";
                 if (!std::filesystem::exists(test::DataPath(golden))) continue;
                 SCOPED_TRACE(golden);
                 engine::Scene scene = test::LoadData("golden_surface/" + name + ".obj");
@@ -238,15 +285,21 @@ TEST(Interpolator, GoldenSteps) {
                 bool const isOpen = name == "gridholetri";
                 if (isOpen && suffix == "it10") continue;
                 double const bound = suffix == "exact" ? 1e-9 : 1e-6;  // steps are taken in float
-                EXPECT_LT((ToRows(Solve(scene, options).P) - expected).cwiseAbs().maxCoeff(), bound);
+                EXPECT_LT((ToRows(Solve(scene, options).P) - expected).cwiseAbs().maxCoeff(),
+                          bound);
             }
         }
     }
     for (std::string const rule : {"a50p", "a50s"}) {
-        auto const alphaRule = rule == "a50p" ? LimitOptions::AlphaRule::FirstStep : LimitOptions::AlphaRule::Stationary;
+        auto const alphaRule = rule == "a50p" ? LimitOptions::AlphaRule::FirstStep
+                                              : LimitOptions::AlphaRule::Stationary;
         engine::Scene const scene = test::LoadData("golden_surface/cube.obj");
         Fit const fit = Solve(scene, {.tolerance = 1e-13}, {0.5, alphaRule});
-        EXPECT_LT((ToRows(fit.P) - test::LoadGoldenPoints("golden_surface/cube_pi_cc_" + rule + "_exact.obj")).cwiseAbs().maxCoeff(), 1e-9);
+        EXPECT_LT((ToRows(fit.P) -
+                   test::LoadGoldenPoints("golden_surface/cube_pi_cc_" + rule + "_exact.obj"))
+                      .cwiseAbs()
+                      .maxCoeff(),
+                  1e-9);
     }
 }
 
@@ -258,7 +311,8 @@ TEST(Interpolator, SolvesAnyNumberOfChannels) {
     for (int length : {1, 2, 3, 4, 5, 9}) {
         Rows const M = Rows::Random(scene.cage.numVertices, length);
         std::vector<double> P(static_cast<size_t>(M.size()));
-        auto const report = interpolator.Solve({M.data(), P.size()}, length, P, {.tolerance = 1e-12});
+        auto const report =
+            interpolator.Solve({M.data(), P.size()}, length, P, {.tolerance = 1e-12});
         EXPECT_TRUE(report.converged);
         EXPECT_LT((ToRows(P, length) - inverse * M).cwiseAbs().maxCoeff(), 1e-9) << length;
     }
@@ -292,8 +346,8 @@ TEST(Interpolator, GivesTheSameBitsForAnyNumberOfThreads) {
     }
 }
 
-// On large meshes several steps go over the rows at once, each behind the one before. Against plain steps in double, one
-// by one; neighbours lie as far apart as on a torus of 420 x 420.
+// On large meshes several steps go over the rows at once, each behind the one before. Against plain
+// steps in double, one by one; neighbours lie as far apart as on a torus of 420 x 420.
 TEST(Interpolator, StepsTakenTogetherAreThoseOneByOne) {
     engine::Scene const scene = Noisy(test::MakeTorus(420, 420));
     auto const refiner = far_ext::CreateRefiner(scene.cage);
@@ -304,19 +358,27 @@ TEST(Interpolator, StepsTakenTogetherAreThoseOneByOne) {
     for (int step = 0; step < 10; ++step) {  // the first application only measures
         A.Apply(P, 3, limit);
         double worst = 0.0;
-        for (size_t i = 0; i < M.size(); i += 3) worst = std::max(worst, std::hypot(M[i] - limit[i], M[i + 1] - limit[i + 1], M[i + 2] - limit[i + 2]));
+        for (size_t i = 0; i < M.size(); i += 3)
+            worst = std::max(worst, std::hypot(M[i] - limit[i], M[i + 1] - limit[i + 1],
+                                               M[i + 2] - limit[i + 2]));
         residuals.push_back(worst / eval::FindSize(M, 3));
         for (size_t i = 0; i < M.size(); ++i) P[i] += M[i] - limit[i];
     }
     Interpolator const interpolator(*refiner);
-    ASSERT_GT(eval::CountStepsPerPass(scene.cage.numVertices, interpolator.GetOperator().GetBandwidth()), 1);
+    ASSERT_GT(
+        eval::CountStepsPerPass(scene.cage.numVertices, interpolator.GetOperator().GetBandwidth()),
+        1);
     std::vector<double> first;
     for (size_t threads : {1, 2, 5}) {
-        tbb::global_control const limitThreads(tbb::global_control::max_allowed_parallelism, threads);
+        tbb::global_control const limitThreads(tbb::global_control::max_allowed_parallelism,
+                                               threads);
         std::vector<double> found(M.size());
-        auto const report = interpolator.Solve(M, 3, found, {.method = SolveMethod::Progressive, .tolerance = 1e-16, .maxIterations = 10});
+        auto const report = interpolator.Solve(
+            M, 3, found,
+            {.method = SolveMethod::Progressive, .tolerance = 1e-16, .maxIterations = 10});
         ASSERT_EQ(report.history.size(), residuals.size());
-        for (size_t i = 0; i < residuals.size(); ++i) EXPECT_NEAR(report.history[i], residuals[i], 1e-4 * residuals[i]) << i;
+        for (size_t i = 0; i < residuals.size(); ++i)
+            EXPECT_NEAR(report.history[i], residuals[i], 1e-4 * residuals[i]) << i;
         double worst = 0.0;
         for (size_t i = 0; i < M.size(); ++i) worst = std::max(worst, std::abs(found[i] - P[i]));
         EXPECT_LT(worst, 1e-6);
@@ -338,11 +400,13 @@ TEST(Singular, TheCubeItselfIsSolvedByMinimumNorm) {
         ASSERT_EQ(fit.report.singularComponents.size(), 1u);
         EXPECT_TRUE(fit.report.singularComponents[0].isSolved);
         // The control mesh is twice the cube.
-        EXPECT_LT((ToRows(fit.P) - 2.0 * ToRows(test::MakeCube().positions)).cwiseAbs().maxCoeff(), 1e-8);
+        EXPECT_LT((ToRows(fit.P) - 2.0 * ToRows(test::MakeCube().positions)).cwiseAbs().maxCoeff(),
+                  1e-8);
     }
 }
 
-// One vertex moved by (.1, .2, 0) on a cube of edge 2: the alternating part is (.1, .2, 0) / 8 at every vertex.
+// One vertex moved by (.1, .2, 0) on a cube of edge 2: the alternating part is (.1, .2, 0) / 8 at
+// every vertex.
 TEST(Singular, APerturbedCubeKeepsTheAlternatingResidual) {
     engine::Scene scene = test::MakeCube();
     scene.positions[0] += 0.1;
@@ -371,7 +435,8 @@ TEST(Singular, PrismsAreIfTheirSidesAreEven) {
 TEST(Singular, EachComponentIsJudgedByItself) {
     engine::Scene moved = test::MakeCube();
     moved.positions[0] += 0.3;
-    engine::Scene const scene = test::Join({Noisy(test::MakeTorus(9, 7)), test::MakeCube(), moved, test::MakePrism(6)});
+    engine::Scene const scene =
+        test::Join({Noisy(test::MakeTorus(9, 7)), test::MakeCube(), moved, test::MakePrism(6)});
     auto const report = Solve(scene).report;
     ASSERT_EQ(report.singularComponents.size(), 3u);
     EXPECT_EQ(report.singularComponents[0].firstVertex, 63);

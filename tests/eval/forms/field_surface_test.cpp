@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/forms/field_surface.h"
 
 #include <cmath>
@@ -47,7 +48,8 @@ void ForEachPlace(engine::Scene const& scene, eval::FieldSurface const& field, V
     }
 }
 
-/// The gradient of a coordinate is the axis less its part along the limit normal: the largest deviation from that.
+/// The gradient of a coordinate is the axis less its part along the limit normal: the largest
+/// deviation from that.
 double FindDeviation(engine::Scene const& scene, int levels) {
     double worst = 0.0;
     for (size_t axis = 0; axis < 3; ++axis) {
@@ -55,7 +57,8 @@ double FindDeviation(engine::Scene const& scene, int levels) {
         eval::FieldSurface const field(scene.cage, scene.positions, form, levels);
         ForEachPlace(scene, field, [&](eval::SurfaceSample const& sample, Vector const& vector) {
             Vector const unit = Vector::Unit(static_cast<Eigen::Index>(axis));
-            worst = std::max(worst, (vector - (unit - unit.dot(sample.normal) * sample.normal)).norm());
+            worst =
+                std::max(worst, (vector - (unit - unit.dot(sample.normal) * sample.normal)).norm());
         });
     }
     return worst;
@@ -68,8 +71,9 @@ TEST(FieldSurface, IsExactInTheRegularInterior) {
 
 // Elsewhere a few levels make it good: regular faces reach nearer and nearer to what is not.
 TEST(FieldSurface, ConvergesEverywhereElse) {
-    for (auto const& scene : {test::MakeCube(), test::MakeQuadSphere(1), test::MakeIrregularTriangles(7, 6, 2), test::MakeIcosphere(1),
-                              test::MakeDodecahedron(), test::MakeGridWithHole(5, 4)}) {
+    for (auto const& scene :
+         {test::MakeCube(), test::MakeQuadSphere(1), test::MakeIrregularTriangles(7, 6, 2),
+          test::MakeIcosphere(1), test::MakeDodecahedron(), test::MakeGridWithHole(5, 4)}) {
         double const coarse = FindDeviation(scene, 2), fine = FindDeviation(scene, 4);
         EXPECT_LT(fine, 2e-3);
         EXPECT_LT(fine, 0.3 * coarse);
@@ -80,15 +84,19 @@ TEST(FieldSurface, ConvergesEverywhereElse) {
 TEST(FieldSurface, DoesNotDependOnTheLevelWhereItIsExact) {
     for (auto const& scene : {test::MakeTorus(9, 7), test::MakeTriangleTorus(9, 7)}) {
         auto const refiner = test::MakeRefiner(scene, 0);
-        auto const noise = test::MakeRandomValues(static_cast<size_t>(refiner->GetLevel(0).GetNumEdges()), 4);
+        auto const noise =
+            test::MakeRandomValues(static_cast<size_t>(refiner->GetLevel(0).GetNumEdges()), 4);
         std::vector<double> const form(noise.begin(), noise.end());
         std::vector<Vector> found[2];
         for (int k : {0, 1}) {
             eval::FieldSurface const field(scene.cage, scene.positions, form, 2 * k);
-            ForEachPlace(scene, field, [&](eval::SurfaceSample const&, Vector const& vector) { found[k].push_back(vector); });
+            ForEachPlace(scene, field, [&](eval::SurfaceSample const&, Vector const& vector) {
+                found[k].push_back(vector);
+            });
         }
         ASSERT_EQ(found[0].size(), found[1].size());
-        for (size_t i = 0; i < found[0].size(); ++i) EXPECT_LT((found[0][i] - found[1][i]).norm(), 1e-10 * (1.0 + found[0][i].norm()));
+        for (size_t i = 0; i < found[0].size(); ++i)
+            EXPECT_LT((found[0][i] - found[1][i]).norm(), 1e-10 * (1.0 + found[0][i].norm()));
     }
 }
 
@@ -100,7 +108,8 @@ TEST(FieldSurface, IsTheSameFromBothSidesOfAnEdge) {
         eval::LimitSurface const surface(*refiner);
         auto const level = refiner->GetLevel(0);
         auto const noise = test::MakeRandomValues(static_cast<size_t>(level.GetNumEdges()), 4);
-        eval::FieldSurface const field(scene.cage, scene.positions, std::vector<double>(noise.begin(), noise.end()), levels);
+        eval::FieldSurface const field(scene.cage, scene.positions,
+                                       std::vector<double>(noise.begin(), noise.end()), levels);
         eval::FieldSurface::Sampler sampler(field);
         double jump = 0.0;
         for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
@@ -110,16 +119,21 @@ TEST(FieldSurface, IsTheSameFromBothSidesOfAnEdge) {
             for (double tau : {0.11, 0.4, 0.83}) {
                 Vector sides[2];
                 for (int k : {0, 1}) {
-                    auto const place = eval::GetEdgePlace(surface, faces[k], level.GetFaceVertices(faces[k]).size(), locals[k], k == 0 ? tau : 1.0 - tau);
-                    sampler.Evaluate(faces[k], place.domain, {&place.s, 1}, {&place.t, 1}, {&sides[k], 1});
+                    auto const place = eval::GetEdgePlace(surface, faces[k],
+                                                          level.GetFaceVertices(faces[k]).size(),
+                                                          locals[k], k == 0 ? tau : 1.0 - tau);
+                    sampler.Evaluate(faces[k], place.domain, {&place.s, 1}, {&place.t, 1},
+                                     {&sides[k], 1});
                 }
                 jump = std::max(jump, (sides[0] - sides[1]).norm() / (1.0 + sides[0].norm()));
             }
         }
         return jump;
     };
-    for (auto const& scene : {test::MakeTorus(9, 7), test::MakeTriangleTorus(9, 7), test::MakeCube(), test::MakeQuadSphere(1),
-                              test::MakeIrregularTriangles(7, 6, 2), test::MakeDodecahedron(), test::MakeGridWithHole(5, 4)}) {
+    for (auto const& scene :
+         {test::MakeTorus(9, 7), test::MakeTriangleTorus(9, 7), test::MakeCube(),
+          test::MakeQuadSphere(1), test::MakeIrregularTriangles(7, 6, 2), test::MakeDodecahedron(),
+          test::MakeGridWithHole(5, 4)}) {
         for (int levels : {1, 3}) EXPECT_LT(findJump(scene, levels), 1e-11);
     }
 }

@@ -1,4 +1,7 @@
-// Designed tangent fields: solves, decomposition, harmonic forms, matching, indices and limits at vertices.
+// SPDX-License-Identifier: Apache-2.0
+//
+// Designed tangent fields: solves, decomposition, harmonic forms, matching, indices and limits at
+// vertices.
 
 #include <algorithm>
 #include <cmath>
@@ -33,13 +36,15 @@ Values MakeNoise(size_t count, unsigned seed) {
 
 double Largest(Values const& values) {
     double largest = 0.0;
-    for (double value : values) largest = std::isfinite(value) ? std::max(largest, std::abs(value)) : 1e300;
+    for (double value : values)
+        largest = std::isfinite(value) ? std::max(largest, std::abs(value)) : 1e300;
     return largest;
 }
 
 double LargestDifference(Values const& a, Values const& b) {
     double largest = a.size() == b.size() ? 0.0 : 1e300;
-    for (size_t i = 0; i < std::min(a.size(), b.size()); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+    for (size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+        largest = std::max(largest, std::abs(a[i] - b[i]));
     return largest;
 }
 
@@ -50,26 +55,31 @@ struct Case {
 };
 
 std::vector<Case> MakeCases() {
-    std::vector<Case> cases{{"cube", test::MakeCube(), 0},
-                            {"torus", test::MakeTorus(9, 7), 2},
-                            {"triangle torus", test::MakeIrregularTriangles(9, 8, 2), 2},
-                            {"disk", test::MakeFan(5, Sdc::SCHEME_LOOP, 0.1, 0.05), 0},
-                            {"grid with hole", test::MakeGridWithHole(7, 5), 1},
-                            {"dodecahedron", test::MakeDodecahedron(), 0},
-                            {"two components", test::Join({test::MakeTorus(6, 5), test::MakeGridWithHole(5, 5)}), 3}};
+    std::vector<Case> cases{
+        {"cube", test::MakeCube(), 0},
+        {"torus", test::MakeTorus(9, 7), 2},
+        {"triangle torus", test::MakeIrregularTriangles(9, 8, 2), 2},
+        {"disk", test::MakeFan(5, Sdc::SCHEME_LOOP, 0.1, 0.05), 0},
+        {"grid with hole", test::MakeGridWithHole(7, 5), 1},
+        {"dodecahedron", test::MakeDodecahedron(), 0},
+        {"two components", test::Join({test::MakeTorus(6, 5), test::MakeGridWithHole(5, 5)}), 3}};
     struct Asset {
         char const* path;
         int numHarmonics;
     };
-    for (Asset const asset : {Asset{"control/spot_control_mesh.obj", 0}, {"tri/bob_small.ply", 2}, {"tri/eight.off", 4}}) {
-        if (test::HasAsset(asset.path)) cases.push_back({asset.path, test::LoadAsset(asset.path), asset.numHarmonics});
+    for (Asset const asset : {Asset{"control/spot_control_mesh.obj", 0},
+                              {"tri/bob_small.ply", 2},
+                              {"tri/eight.off", 4}}) {
+        if (test::HasAsset(asset.path))
+            cases.push_back({asset.path, test::LoadAsset(asset.path), asset.numHarmonics});
     }
     return cases;
 }
 
 /// Strengths at random that add up to nothing on each component, and are 0 on none (-1).
 Values MakeBalanced(std::vector<int> const& components, int count, unsigned seed) {
-    Values values = MakeNoise(components.size(), seed), sums(static_cast<size_t>(count), 0.0), sizes(sums);
+    Values values = MakeNoise(components.size(), seed), sums(static_cast<size_t>(count), 0.0),
+           sizes(sums);
     for (size_t i = 0; i < values.size(); ++i) {
         if (components[i] < 0) continue;
         sums[static_cast<size_t>(components[i])] += values[i];
@@ -82,10 +92,12 @@ Values MakeBalanced(std::vector<int> const& components, int count, unsigned seed
     return values;
 }
 
-std::vector<int> FindVertexComponents(Far::TopologyLevel const& level, far_ext::FaceComponents const& components) {
+std::vector<int> FindVertexComponents(Far::TopologyLevel const& level,
+                                      far_ext::FaceComponents const& components) {
     std::vector<int> ofVertex(static_cast<size_t>(level.GetNumVertices()), -1);
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        for (Index vertex : level.GetFaceVertices(face)) ofVertex[static_cast<size_t>(vertex)] = components.ofFace[static_cast<size_t>(face)];
+        for (Index vertex : level.GetFaceVertices(face))
+            ofVertex[static_cast<size_t>(vertex)] = components.ofFace[static_cast<size_t>(face)];
     }
     return ofVertex;
 }
@@ -93,18 +105,25 @@ std::vector<int> FindVertexComponents(Far::TopologyLevel const& level, far_ext::
 // Worked out by hand: equilateral triangles, a square as two triangles, unit squares.
 TEST(HodgeStars, AreTheRatiosOfDualToEdge) {
     double const h = std::sqrt(3.0) / 2.0;
-    auto const find = [](engine::Scene const& scene) { return far_ext::FindHodgeStars(test::MakeRefiner(scene, 0)->GetLevel(0), scene.positions); };
-    auto const rhombus = find(test::MakeScene({0, 0, 0, 1, 0, 0, 0.5, h, 0, 1.5, h, 0}, {{0, 1, 2}, {1, 3, 2}}, Sdc::SCHEME_LOOP));
+    auto const find = [](engine::Scene const& scene) {
+        return far_ext::FindHodgeStars(test::MakeRefiner(scene, 0)->GetLevel(0), scene.positions);
+    };
+    auto const rhombus = find(test::MakeScene({0, 0, 0, 1, 0, 0, 0.5, h, 0, 1.5, h, 0},
+                                              {{0, 1, 2}, {1, 3, 2}}, Sdc::SCHEME_LOOP));
     // In the order in which faces meet them: 01, 12 (of both), 20, 13, 32.
     double const expected[] = {0.5, 1.0, 0.5, 0.5, 0.5};
-    for (size_t e = 0; e < 5; ++e) EXPECT_NEAR(rhombus.edge[e], expected[e] / std::sqrt(3.0), 1e-14);
+    for (size_t e = 0; e < 5; ++e)
+        EXPECT_NEAR(rhombus.edge[e], expected[e] / std::sqrt(3.0), 1e-14);
     for (double area : rhombus.area) EXPECT_NEAR(area, h / 2.0, 1e-14);
-    auto const square = find(test::MakeLattice(1, 1, Sdc::SCHEME_LOOP));  // the diagonal sees right angles only
+    auto const square =
+        find(test::MakeLattice(1, 1, Sdc::SCHEME_LOOP));  // the diagonal sees right angles only
     double const mean = (4 * 0.5 + 0.0) / 5.0;
     EXPECT_NEAR(*std::min_element(square.edge.begin(), square.edge.end()), 1e-3 * mean, 1e-14);
     EXPECT_NEAR(*std::max_element(square.edge.begin(), square.edge.end()), 0.5, 1e-14);
     auto const grid = find(test::MakeLattice(2, 2, Sdc::SCHEME_CATMARK));
-    for (double star : grid.edge) EXPECT_TRUE(std::abs(star - 1.0) < 1e-14 || std::abs(star - 0.5) < 1e-14) << star;  // inside, on the border
+    for (double star : grid.edge)
+        EXPECT_TRUE(std::abs(star - 1.0) < 1e-14 || std::abs(star - 0.5) < 1e-14)
+            << star;  // inside, on the border
     EXPECT_NEAR(std::accumulate(grid.edge.begin(), grid.edge.end(), 0.0), 4 * 1.0 + 8 * 0.5, 1e-13);
 }
 
@@ -116,7 +135,8 @@ TEST(FieldDesigner, PartsHaveWhatWasAskedFor) {
         for (AtBoundary atBoundary : {AtBoundary::Tangent, AtBoundary::Normal}) {
             FieldDesigner designer(level, scene.positions, atBoundary);
             auto const& components = designer.GetComponents();
-            Values sources = MakeBalanced(FindVertexComponents(level, components), components.count, 1);
+            Values sources =
+                MakeBalanced(FindVertexComponents(level, components), components.count, 1);
             Values const vortices = MakeBalanced(components.ofFace, components.count, 2);
             EXPECT_TRUE(designer.FindSourceImbalance(sources).empty());
             EXPECT_TRUE(designer.FindVortexImbalance(vortices).empty());
@@ -125,7 +145,8 @@ TEST(FieldDesigner, PartsHaveWhatWasAskedFor) {
             EXPECT_LT(Largest(designer.FindCurl(gradient)), 1e-12 * Largest(gradient)) << name;
             Values inflow = designer.FindInflow(gradient);
             for (size_t v = 0; v < inflow.size(); ++v) {
-                bool const isFixed = atBoundary == AtBoundary::Normal && level.IsVertexBoundary(static_cast<Index>(v));
+                bool const isFixed = atBoundary == AtBoundary::Normal &&
+                                     level.IsVertexBoundary(static_cast<Index>(v));
                 if (isFixed) continue;
                 EXPECT_NEAR(inflow[v], -sources[v], 1e-10) << name;  // flow leaves a source
             }
@@ -145,7 +166,8 @@ TEST(FieldDesigner, PartsHaveWhatWasAskedFor) {
                 if (atBoundary != AtBoundary::Normal || !level.IsEdgeBoundary(edge)) continue;
                 EXPECT_NEAR(gradient[static_cast<size_t>(edge)], 0.0, 1e-13);
                 EXPECT_EQ(vortex[static_cast<size_t>(edge)], 0.0);
-                for (Values const& h : harmonics) EXPECT_NEAR(h[static_cast<size_t>(edge)], 0.0, 1e-13);
+                for (Values const& h : harmonics)
+                    EXPECT_NEAR(h[static_cast<size_t>(edge)], 0.0, 1e-13);
             }
         }
     }
@@ -162,8 +184,10 @@ TEST(FieldDesigner, HarmonicFormsAreIndependent) {
         for (size_t i = 0; i < harmonics.size(); ++i) {
             for (size_t j = 0; j < harmonics.size(); ++j) {
                 double sum = 0.0;
-                for (size_t e = 0; e < harmonics[i].size(); ++e) sum += designer.GetStars().edge[e] * harmonics[i][e] * harmonics[j][e];
-                gram(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = sum / (designer.FindNorm(harmonics[i]) * designer.FindNorm(harmonics[j]));
+                for (size_t e = 0; e < harmonics[i].size(); ++e)
+                    sum += designer.GetStars().edge[e] * harmonics[i][e] * harmonics[j][e];
+                gram(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+                    sum / (designer.FindNorm(harmonics[i]) * designer.FindNorm(harmonics[j]));
             }
         }
         EXPECT_GT(gram.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), 1e-3) << name;
@@ -188,7 +212,8 @@ TEST(FieldDesigner, DecompositionIsOrthogonal) {
         EXPECT_NEAR(dot(parts.vortex, parts.harmonic), 0.0, 1e-12) << name;
         EXPECT_LT(Largest(designer.FindCurl(parts.harmonic)), 1e-11 * Largest(form)) << name;
         double const harmonic = designer.FindNorm(parts.harmonic) / norm;
-        EXPECT_TRUE(numHarmonics == 0 ? harmonic < 1e-10 : harmonic > 1e-4) << name << ": " << harmonic;
+        EXPECT_TRUE(numHarmonics == 0 ? harmonic < 1e-10 : harmonic > 1e-4)
+            << name << ": " << harmonic;
         auto const again = designer.Decompose(parts.vortex);
         EXPECT_LT(LargestDifference(again.vortex, parts.vortex), 1e-10 * Largest(form)) << name;
     }
@@ -205,7 +230,8 @@ TEST(FieldDesigner, ImbalanceIsTold) {
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].component, 0);
     EXPECT_DOUBLE_EQ(found[0].sum, 0.5);
-    // A vortex on an open component, whose outside takes what is over, is fine; on the cube it is not.
+    // A vortex on an open component, whose outside takes what is over, is fine; on the cube it is
+    // not.
     Values vortices(static_cast<size_t>(scene.cage.GetNumFaces()), 0.0);
     vortices.back() = 1.0;
     EXPECT_TRUE(designer.FindVortexImbalance(vortices).empty());
@@ -219,7 +245,8 @@ TEST(FieldIndex, AddsUpToTheEulerCharacteristic) {
         auto const refiner = test::MakeRefiner(scene, 0);
         auto const level = refiner->GetLevel(0);
         Values const form = MakeNoise(static_cast<size_t>(level.GetNumEdges()), 6);
-        auto const perComponent = far_ext::FaceComponents::Find(level).FindEulerCharacteristics(level);
+        auto const perComponent =
+            far_ext::FaceComponents::Find(level).FindEulerCharacteristics(level);
         int const euler = std::accumulate(perComponent.begin(), perComponent.end(), 0);
         EXPECT_DOUBLE_EQ(eval::FindFieldIndices(level, form).sum, euler) << name;
     }
@@ -229,7 +256,8 @@ TEST(FieldIndex, AddsUpToTheEulerCharacteristic) {
     Values sources(static_cast<size_t>(sphere.cage.numVertices), 0.0);
     sources[3] = 1.0;
     sources[100] = -1.0;
-    auto const indices = eval::FindFieldIndices(refiner->GetLevel(0), designer.MakeGradient(sources));
+    auto const indices =
+        eval::FindFieldIndices(refiner->GetLevel(0), designer.MakeGradient(sources));
     ASSERT_EQ(indices.singularities.size(), 2u);
     EXPECT_EQ(indices.singularities[0].element, 3);
     EXPECT_EQ(indices.singularities[1].element, 100);
@@ -258,11 +286,22 @@ TEST(FaceVectors, AreExactForConstantFields) {
             rows.Apply(form.data(), vectors.data(), 1);
             for (Index face = 0; face < level.GetNumFaces(); ++face) {
                 auto const corners = level.GetFaceVertices(face);
-                if (corners.size() != 3 && name != "dodecahedron" && name != "cube") continue;  // perhaps not flat
-                auto const at = [&](int j) { return Eigen::Map<Eigen::Vector3d const>(&scene.positions[3 * static_cast<size_t>(corners[j])]); };
+                if (corners.size() != 3 && name != "dodecahedron" && name != "cube")
+                    continue;  // perhaps not flat
+                auto const at = [&](int j) {
+                    return Eigen::Map<Eigen::Vector3d const>(
+                        &scene.positions[3 * static_cast<size_t>(corners[j])]);
+                };
                 Eigen::Vector3d const normal = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
-                Eigen::Vector3d const expected = Eigen::Vector3d::Unit(static_cast<Eigen::Index>(axis)) - normal[static_cast<Eigen::Index>(axis)] * normal;
-                EXPECT_LT((Eigen::Map<Eigen::Vector3d const>(&vectors[3 * static_cast<size_t>(face)]) - expected).norm(), 1e-9) << name;
+                Eigen::Vector3d const expected =
+                    Eigen::Vector3d::Unit(static_cast<Eigen::Index>(axis)) -
+                    normal[static_cast<Eigen::Index>(axis)] * normal;
+                EXPECT_LT(
+                    (Eigen::Map<Eigen::Vector3d const>(&vectors[3 * static_cast<size_t>(face)]) -
+                     expected)
+                        .norm(),
+                    1e-9)
+                    << name;
             }
         }
     }
@@ -270,7 +309,8 @@ TEST(FaceVectors, AreExactForConstantFields) {
 
 // Vectors that a form makes are matched by that form.
 TEST(FieldMatch, FindsTheFormBehindVectors) {
-    for (auto const& scene : {test::MakeIrregularTriangles(9, 8, 2), test::MakeIcosphere(2), test::MakeTorus(9, 7)}) {
+    for (auto const& scene :
+         {test::MakeIrregularTriangles(9, 8, 2), test::MakeIcosphere(2), test::MakeTorus(9, 7)}) {
         auto const refiner = test::MakeRefiner(scene, 0);
         auto const level = refiner->GetLevel(0);
         Values const form = MakeCoordinateForm(level, scene.positions, 1);
@@ -307,8 +347,8 @@ int FindFirstFan(Far::TopologyLevel const& level, Index vertex) {
     return 0;
 }
 
-/// Whether the limit of a 1-form exists at a vertex: forms.md 6, last paragraph. On a crease, that of the fan from its first
-/// sharp spoke.
+/// Whether the limit of a 1-form exists at a vertex: forms.md 6, last paragraph. On a crease, that
+/// of the fan from its first sharp spoke.
 bool HasLimit(Far::TopologyRefiner const& refiner, Far::TopologyLevel const& level, Index vertex) {
     int k = level.GetVertexFaces(vertex).size();
     if (k == 0) return false;
@@ -317,7 +357,8 @@ bool HasLimit(Far::TopologyRefiner const& refiner, Far::TopologyLevel const& lev
     if (!level.IsVertexBoundary(vertex) && !isCreased) return k > 2;
     if (!level.IsVertexBoundary(vertex)) k = FindFirstFan(level, vertex);
     bool const isLoop = refiner.GetSchemeType() == Sdc::SCHEME_LOOP;
-    if (level.GetVertexRule(vertex) != Sdc::Crease::RULE_CREASE) return k == 1;  // a corner of more faces may have parallel borders
+    if (level.GetVertexRule(vertex) != Sdc::Crease::RULE_CREASE)
+        return k == 1;  // a corner of more faces may have parallel borders
     return isLoop ? k <= 5 : (k >= 2 && k <= 3);
 }
 
@@ -330,10 +371,12 @@ TEST(VertexCovectors, AreTheSameOnEveryLevel) {
         scene.cage.cornerVertices.clear();
         scene.cage.cornerSharpness.clear();
         for (float& sharpness : scene.cage.creaseSharpness) sharpness = 10.0f;
-        for (auto boundary : {Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
+        for (auto boundary :
+             {Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
             scene.cage.options.SetVtxBoundaryInterpolation(boundary);
             auto const refiner = test::MakeRefiner(scene, 2);
-            Values positions = eval::RefineValues<3>(*refiner, 1, scene.positions), form = MakeNoise(static_cast<size_t>(refiner->GetLevel(1).GetNumEdges()), 7);
+            Values positions = eval::RefineValues<3>(*refiner, 1, scene.positions),
+                   form = MakeNoise(static_cast<size_t>(refiner->GetLevel(1).GetNumEdges()), 7);
             Values const nextPositions = eval::RefineValues<3>(*refiner, 2, positions);
             auto const step = far_ext::BuildFormStencils(*refiner, 2);
             Values next(static_cast<size_t>(step.s1.GetNumRows()));
@@ -342,18 +385,30 @@ TEST(VertexCovectors, AreTheSameOnEveryLevel) {
             auto const level = refiner->GetLevel(1);
             for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
                 if (!HasLimit(*refiner, level, vertex)) continue;
-                auto const a = coarse.Find(vertex, form, positions), b = fine.Find(level.GetVertexChildVertex(vertex), next, nextPositions);
-                numOnCreases += level.GetVertexRule(vertex) != Sdc::Crease::RULE_SMOOTH && !level.IsVertexBoundary(vertex);
+                auto const a = coarse.Find(vertex, form, positions),
+                           b = fine.Find(level.GetVertexChildVertex(vertex), next, nextPositions);
+                numOnCreases += level.GetVertexRule(vertex) != Sdc::Crease::RULE_SMOOTH &&
+                                !level.IsVertexBoundary(vertex);
                 Eigen::Vector3d const va = a.GetVector(), vb = b.GetVector();
-                EXPECT_LT((va - vb).norm(), 1e-8 * (1.0 + va.norm())) << name << ", vertex " << vertex;
-                EXPECT_LT((a.GetNormal() - b.GetNormal()).norm(), 1e-9) << name << ", vertex " << vertex;
+                EXPECT_LT((va - vb).norm(), 1e-8 * (1.0 + va.norm()))
+                    << name << ", vertex " << vertex;
+                EXPECT_LT((a.GetNormal() - b.GetNormal()).norm(), 1e-9)
+                    << name << ", vertex " << vertex;
                 if (!far_ext::IsSmoothInterior(level, vertex)) continue;
-                // forms.md 7.2: both masks are left eigenvectors, of S0 and of S1, with the same eigenvalue.
-                double const c = std::cos(2.0 * std::acos(-1.0) / level.GetVertexFaces(vertex).size());
-                double const lambda = scene.cage.scheme == Sdc::SCHEME_LOOP ? 0.375 + 0.25 * c : (5.0 + c + std::sqrt(0.5 * (1.0 + c)) * std::sqrt(2.0 * (9.0 + c))) / 16.0;
+                // forms.md 7.2: both masks are left eigenvectors, of S0 and of S1, with the same
+                // eigenvalue.
+                double const c =
+                    std::cos(2.0 * std::acos(-1.0) / level.GetVertexFaces(vertex).size());
+                double const lambda =
+                    scene.cage.scheme == Sdc::SCHEME_LOOP
+                        ? 0.375 + 0.25 * c
+                        : (5.0 + c + std::sqrt(0.5 * (1.0 + c)) * std::sqrt(2.0 * (9.0 + c))) /
+                              16.0;
                 for (size_t t = 0; t < 2; ++t) {
-                    EXPECT_LT((b.tangents[t] - lambda * a.tangents[t]).norm(), 1e-10) << name << ", vertex " << vertex;
-                    EXPECT_NEAR(b.values[t], lambda * a.values[t], 1e-10) << name << ", vertex " << vertex;
+                    EXPECT_LT((b.tangents[t] - lambda * a.tangents[t]).norm(), 1e-10)
+                        << name << ", vertex " << vertex;
+                    EXPECT_NEAR(b.values[t], lambda * a.values[t], 1e-10)
+                        << name << ", vertex " << vertex;
                 }
             }
         }
@@ -375,8 +430,11 @@ TEST(VertexCovectors, GradientsAreProjectedAxes) {
                 auto const found = covectors.Find(vertex, form, positions);
                 Eigen::Vector3d const normal = found.GetNormal();
                 if (normal.isZero()) continue;
-                Eigen::Vector3d const expected = Eigen::Vector3d::Unit(static_cast<Eigen::Index>(axis)) - normal[static_cast<Eigen::Index>(axis)] * normal;
-                EXPECT_LT((found.GetVector() - expected).norm(), 1e-7) << name << ", vertex " << vertex;
+                Eigen::Vector3d const expected =
+                    Eigen::Vector3d::Unit(static_cast<Eigen::Index>(axis)) -
+                    normal[static_cast<Eigen::Index>(axis)] * normal;
+                EXPECT_LT((found.GetVector() - expected).norm(), 1e-7)
+                    << name << ", vertex " << vertex;
             }
         }
     }

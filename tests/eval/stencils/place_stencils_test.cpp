@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/stencils/place_stencils.h"
 
 #include <random>
@@ -12,7 +13,8 @@
 namespace limn::eval {
 namespace {
 
-/// Random places of every face (of large meshes: some faces), and its corners, which may be irregular.
+/// Random places of every face (of large meshes: some faces), and its corners, which may be
+/// irregular.
 std::vector<SurfacePlace> MakePlaces(LimitSurface const& surface) {
     std::vector<SurfacePlace> places;
     std::mt19937 random(1);
@@ -51,11 +53,13 @@ TEST(PlaceStencils, AgreeWithEvaluatingEachPlaceOnEveryCage) {
         for (size_t i = 0; i < places.size(); ++i) {
             if (!surface.HasLimit(places[i].face)) continue;
             tree.Bind(places[i].face);
-            auto const expected = EvaluateSample(tree, places[i].domain, places[i].s, places[i].t, 1.0);
+            auto const expected =
+                EvaluateSample(tree, places[i].domain, places[i].s, places[i].t, 1.0);
             auto const& c = samples[i].curvature;
             ASSERT_LT((samples[i].position - expected.position).norm(), 1e-13 * scale) << file << i;
             ASSERT_LT((samples[i].normal - expected.normal).norm(), 1e-8) << file << i;
-            double const bend = std::max({std::abs(expected.curvature.k1), std::abs(expected.curvature.k2), 1.0 / scale});
+            double const bend = std::max(
+                {std::abs(expected.curvature.k1), std::abs(expected.curvature.k2), 1.0 / scale});
             ASSERT_LT(std::abs(c.k1 - expected.curvature.k1), 1e-6 * bend) << file << i;
             ASSERT_LT(std::abs(c.k2 - expected.curvature.k2), 1e-6 * bend) << file << i;
         }
@@ -101,9 +105,11 @@ TEST(PlaceStencils, EvaluatorsInFloatAgree) {
     PlaceStencils const stencils(surface, places);
     auto const expected = stencils.Evaluate(scene.positions, 1.0);
     for (auto kind : {EvaluatorKind::Simd, EvaluatorKind::OsdCpu}) {
-        auto const samples = stencils.Evaluate(scene.positions, 1.0, StencilEvaluator(kind, stencils.MakeRows()));
+        auto const samples =
+            stencils.Evaluate(scene.positions, 1.0, StencilEvaluator(kind, stencils.MakeRows()));
         for (size_t i = 0; i < places.size(); ++i) {
-            ASSERT_LT((samples[i].position - expected[i].position).norm(), 1e-6 * Scale(scene)) << GetName(kind) << i;
+            ASSERT_LT((samples[i].position - expected[i].position).norm(), 1e-6 * Scale(scene))
+                << GetName(kind) << i;
             ASSERT_LT((samples[i].normal - expected[i].normal).norm(), 1e-3) << GetName(kind) << i;
         }
     }
@@ -115,7 +121,9 @@ TEST(PlaceStencils, WhatFloatCannotHoldIsRefused) {
     LimitSurface const surface(*refiner);
     PlaceStencils const stencils(surface, {{0, 0, 0.5, 0.5}});
     scene.positions[3] = 1e300;
-    EXPECT_THROW(stencils.Evaluate(scene.positions, 1.0, StencilEvaluator(EvaluatorKind::Simd, stencils.MakeRows())), Error);
+    EXPECT_THROW(stencils.Evaluate(scene.positions, 1.0,
+                                   StencilEvaluator(EvaluatorKind::Simd, stencils.MakeRows())),
+                 Error);
 }
 
 }  // namespace

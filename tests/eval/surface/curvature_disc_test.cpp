@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/surface/curvature_disc.h"
 
 #include <algorithm>
@@ -36,8 +37,9 @@ struct Fan {
     std::vector<eval::DiscSector> sectors;
 };
 
-/// Integral of K times the weight, ring by ring towards the vertex down to 2^-15, by 3 x 3 Gauss points of 4 x 4
-/// cells per polynomial piece. What lies nearer follows from the rings' being a geometric series in the end.
+/// Integral of K times the weight, ring by ring towards the vertex down to 2^-15, by 3 x 3 Gauss
+/// points of 4 x 4 cells per polynomial piece. What lies nearer follows from the rings' being a
+/// geometric series in the end.
 template <class Weight>
 double IntegrateFinely(Fan& fan, double radius, Weight weight) {
     constexpr double kNodes[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
@@ -51,10 +53,13 @@ double IntegrateFinely(Fan& fan, double radius, Weight weight) {
                 for (int i = 0; i < 12; ++i) {
                     double const p = (i / 3 + kNodes[i % 3]) / 4, q = (j / 3 + kNodes[j % 3]) / 4;
                     double const width = isTriangle ? p : 1.0;
-                    double const a = origin[0] + p * x[0] + width * q * y[0], b = origin[1] + p * x[1] + width * q * y[1];
+                    double const a = origin[0] + p * x[0] + width * q * y[0],
+                                 b = origin[1] + p * x[1] + width * q * y[1];
                     auto const at = eval::EvaluateSample(fan.tree, 0, a, b, 1.0);
-                    double const area = at.tangentS.cross(at.tangentT).norm() * std::abs(x[0] * y[1] - x[1] * y[0]) * width;
-                    sum += at.curvature.gaussian * area * weight(a, b) * kWeights[i % 3] * kWeights[j % 3] / 16;
+                    double const area = at.tangentS.cross(at.tangentT).norm() *
+                                        std::abs(x[0] * y[1] - x[1] * y[0]) * width;
+                    sum += at.curvature.gaussian * area * weight(a, b) * kWeights[i % 3] *
+                           kWeights[j % 3] / 16;
                 }
             }
         };
@@ -79,31 +84,36 @@ double IntegrateFinely(Fan& fan, double radius, Weight weight) {
 
 class DiscRound : public testing::TestWithParam<std::pair<int, Sdc::SchemeType>> {
 protected:
-    /// Of the reference: the larger the valence, the slower its rings shrink, cup and saddle at rates of their own.
-    double GetTolerance() const { return GetParam().first > 9 ? 2e-3 : GetParam().first > 6 ? 2e-5 : 2e-6; }
+    /// Of the reference: the larger the valence, the slower its rings shrink, cup and saddle at
+    /// rates of their own.
+    double GetTolerance() const {
+        return GetParam().first > 9 ? 2e-3 : GetParam().first > 6 ? 2e-5 : 2e-6;
+    }
 };
 
-INSTANTIATE_TEST_SUITE_P(Vertices, DiscRound,
-                         testing::Values(std::pair{3, Sdc::SCHEME_CATMARK}, std::pair{4, Sdc::SCHEME_CATMARK},
-                                         std::pair{5, Sdc::SCHEME_CATMARK}, std::pair{6, Sdc::SCHEME_CATMARK},
-                                         std::pair{8, Sdc::SCHEME_CATMARK}, std::pair{12, Sdc::SCHEME_CATMARK},
-                                         std::pair{3, Sdc::SCHEME_LOOP}, std::pair{5, Sdc::SCHEME_LOOP},
-                                         std::pair{6, Sdc::SCHEME_LOOP}, std::pair{9, Sdc::SCHEME_LOOP}));
+INSTANTIATE_TEST_SUITE_P(
+    Vertices, DiscRound,
+    testing::Values(std::pair{3, Sdc::SCHEME_CATMARK}, std::pair{4, Sdc::SCHEME_CATMARK},
+                    std::pair{5, Sdc::SCHEME_CATMARK}, std::pair{6, Sdc::SCHEME_CATMARK},
+                    std::pair{8, Sdc::SCHEME_CATMARK}, std::pair{12, Sdc::SCHEME_CATMARK},
+                    std::pair{3, Sdc::SCHEME_LOOP}, std::pair{5, Sdc::SCHEME_LOOP},
+                    std::pair{6, Sdc::SCHEME_LOOP}, std::pair{9, Sdc::SCHEME_LOOP}));
 
 // What the border tells by the theorem of Gauss and Bonnet is what lies inside.
 TEST_P(DiscRound, TheBorderKnowsTheCurvatureInside) {
     for (auto const& [a, b] : {std::pair{0.2, 0.0}, {0.0, 0.2}, {0.15, -0.1}}) {
         Fan fan(GetParam().first, GetParam().second, a, b);
         double const inside = IntegrateFinely(fan, 0.25, [](double, double) { return 1.0; });
-        EXPECT_NEAR(eval::IntegrateInnerDisc(fan.tree, fan.sectors), inside, GetTolerance()) << a << " " << b;
+        EXPECT_NEAR(eval::IntegrateInnerDisc(fan.tree, fan.sectors), inside, GetTolerance())
+            << a << " " << b;
     }
 }
 
 TEST_P(DiscRound, TheWholeDiscIsWeighted) {
     Fan fan(GetParam().first, GetParam().second, 0.15, -0.1);
     bool const isLoop = fan.surface.IsLoop();
-    double const weighted =
-        IntegrateFinely(fan, 0.5, [&](double a, double b) { return eval::GetDiscWeight(isLoop, a, b, 0.5); });
+    double const weighted = IntegrateFinely(
+        fan, 0.5, [&](double a, double b) { return eval::GetDiscWeight(isLoop, a, b, 0.5); });
     EXPECT_NEAR(eval::IntegrateDisc(fan.tree, fan.sectors), weighted, GetTolerance());
 }
 
@@ -140,14 +150,16 @@ TEST_P(DiscWeight, IsOneInsideZeroOutsideAndTheSameFromBothSidesOfAnEdge) {
     }
 }
 
-// In the plane of a regular vertex the weight of neighbouring sectors is one smooth function: its slope
-// across their common edge vanishes on quads; on triangles, mirrored there, it is that along the edge.
+// In the plane of a regular vertex the weight of neighbouring sectors is one smooth function: its
+// slope across their common edge vanishes on quads; on triangles, mirrored there, it is that along
+// the edge.
 TEST_P(DiscWeight, IsSmoothAcrossEdges) {
     bool const isLoop = GetParam();
     double const e = 1e-5;
     for (double a = 0.26; a < 0.5; a += 0.02) {
         double const here = eval::GetDiscWeight(isLoop, a, e, 0.5);
-        double const beyond = eval::GetDiscWeight(isLoop, isLoop ? a - e : a, e, 0.5);  // (a, -e) seen from the other side
+        double const beyond = eval::GetDiscWeight(isLoop, isLoop ? a - e : a, e,
+                                                  0.5);  // (a, -e) seen from the other side
         double const middle = eval::GetDiscWeight(isLoop, a, 0.0, 0.5);
         EXPECT_NEAR((here - middle) / e, (middle - beyond) / e, 1e-2) << a;
     }
@@ -168,8 +180,10 @@ TEST_P(DiscWeight, CornerCoordinatesFollowTheEdges) {
     bool const isLoop = GetParam();
     int const size = isLoop ? 3 : 4;
     for (int corner = 0; corner < size; ++corner) {
-        EXPECT_EQ(eval::FromCorner(isLoop, corner, 1.0, 0.0), eval::FromCorner(isLoop, (corner + 1) % size, 0.0, 0.0));
-        EXPECT_EQ(eval::FromCorner(isLoop, corner, 0.0, 1.0), eval::FromCorner(isLoop, (corner + size - 1) % size, 0.0, 0.0));
+        EXPECT_EQ(eval::FromCorner(isLoop, corner, 1.0, 0.0),
+                  eval::FromCorner(isLoop, (corner + 1) % size, 0.0, 0.0));
+        EXPECT_EQ(eval::FromCorner(isLoop, corner, 0.0, 1.0),
+                  eval::FromCorner(isLoop, (corner + size - 1) % size, 0.0, 0.0));
     }
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/surface/limit_surface.h"
 
 #include <algorithm>
@@ -24,7 +25,8 @@ using eval::LimitSurface;
 /// OpenSubdiv's own evaluator, isolated as deep as it goes: the slow reference of bake.md.
 class BfrReference {
 public:
-    BfrReference(Far::TopologyRefiner const& refiner, std::vector<double> const& positions, int level)
+    BfrReference(Far::TopologyRefiner const& refiner, std::vector<double> const& positions,
+                 int level)
         : _factory(refiner, MakeOptions(level)), _positions(positions) {}
 
     bool Bind(Index face) {
@@ -39,18 +41,22 @@ public:
     std::array<Eigen::Vector3d, 6> Evaluate(double s, double t) const {
         double const st[2] = {s, t};
         std::array<Eigen::Vector3d, 6> r;
-        _surface->Evaluate(st, _points.data(), {3}, r[0].data(), r[1].data(), r[2].data(), r[3].data(),
-                           r[4].data(), r[5].data());
+        _surface->Evaluate(st, _points.data(), {3}, r[0].data(), r[1].data(), r[2].data(),
+                           r[3].data(), r[4].data(), r[5].data());
         return r;
     }
 
-    /// OpenSubdiv 3.5 turns the sign of second derivatives in the flipped (middle) triangles of Loop
-    /// meshes, so for Loop they come from differences of its first derivatives.
+    /// OpenSubdiv 3.5 turns the sign of second derivatives in the flipped (middle) triangles of
+    /// Loop meshes, so for Loop they come from differences of its first derivatives.
     std::array<Eigen::Vector3d, 6> EvaluateByDifferences(double s, double t) const {
         constexpr double h = 1e-5;
         auto const at = Evaluate(s, t), s0 = Evaluate(s - h, t), s1 = Evaluate(s + h, t);
         auto const t0 = Evaluate(s, t - h), t1 = Evaluate(s, t + h);
-        return {at[0], at[1], at[2], (s1[1] - s0[1]) / (2 * h), (t1[1] - t0[1]) / (2 * h),
+        return {at[0],
+                at[1],
+                at[2],
+                (s1[1] - s0[1]) / (2 * h),
+                (t1[1] - t0[1]) / (2 * h),
                 (t1[2] - t0[2]) / (2 * h)};
     }
 
@@ -71,7 +77,8 @@ private:
 };
 
 double Diagonal(std::vector<double> const& positions) {
-    Eigen::Map<Eigen::Matrix3Xd const> const p(positions.data(), 3, static_cast<Index>(positions.size() / 3));
+    Eigen::Map<Eigen::Matrix3Xd const> const p(positions.data(), 3,
+                                               static_cast<Index>(positions.size() / 3));
     return (p.rowwise().maxCoeff() - p.rowwise().minCoeff()).norm();
 }
 
@@ -103,24 +110,27 @@ Deviation CompareWithBfr(engine::Scene const& scene, int level, int samplesPerSi
                     if (isLoop && s + t > 0.99) continue;
                     double coord[2] = {s, t};
                     if (bfr.GetParameterization().HasSubFaces()) {
-                        bfr.GetParameterization().ConvertNormalizedSubFaceToCoord(domain, coord, coord);
+                        bfr.GetParameterization().ConvertNormalizedSubFaceToCoord(domain, coord,
+                                                                                  coord);
                     }
                     auto const expected = isLoop ? bfr.EvaluateByDifferences(coord[0], coord[1])
                                                  : bfr.Evaluate(coord[0], coord[1]);
                     auto const sample = eval::EvaluateSample(tree, domain, s, t, 1.0);
-                    worst.position = std::max(worst.position, (sample.position - expected[0]).norm() / size);
+                    worst.position =
+                        std::max(worst.position, (sample.position - expected[0]).norm() / size);
                     ++worst.numSamples;
                     Eigen::Vector3d const n = expected[1].cross(expected[2]);
-                    bool const isCollapsed = n.norm() < 1e-10 * size * size ||
-                                             n.norm() < 1e-6 * expected[1].norm() * expected[2].norm();
+                    bool const isCollapsed =
+                        n.norm() < 1e-10 * size * size ||
+                        n.norm() < 1e-6 * expected[1].norm() * expected[2].norm();
                     if (isCollapsed) continue;
                     worst.normal = std::max(worst.normal, (sample.normal - n.normalized()).norm());
                     auto const k = eval::ComputeCurvature(expected[1], expected[2], expected[3],
                                                           expected[4], expected[5], 1.0);
                     double const scale = std::max({std::abs(k.k1), std::abs(k.k2), 1e-3 / size});
-                    worst.curvature = std::max({worst.curvature,
-                                                std::abs(k.k1 - sample.curvature.k1) / scale,
-                                                std::abs(k.k2 - sample.curvature.k2) / scale});
+                    worst.curvature =
+                        std::max({worst.curvature, std::abs(k.k1 - sample.curvature.k1) / scale,
+                                  std::abs(k.k2 - sample.curvature.k2) / scale});
                 }
             }
         }
@@ -156,8 +166,8 @@ struct RefinedPoint {
     void AddWithWeight(RefinedPoint const& other, double weight) { p += weight * other.p; }
 };
 
-// A corner of the cage, refined six times, lies within O(4^-6) of its limit; for valence 2 and repeated
-// corners, where Bfr is wrong or crashes, this is the reference.
+// A corner of the cage, refined six times, lies within O(4^-6) of its limit; for valence 2 and
+// repeated corners, where Bfr is wrong or crashes, this is the reference.
 TEST_P(LimitSurfaceOnCage, CornersAreWhereRefinementLeads) {
     engine::Scene scene = test::LoadData("opensubdiv_shapes/" + GetParam());
     if (GetParam().starts_with("loop")) scene.cage.scheme = Sdc::SCHEME_LOOP;
@@ -169,7 +179,8 @@ TEST_P(LimitSurfaceOnCage, CornersAreWhereRefinementLeads) {
     deep->RefineUniform(Far::TopologyRefiner::UniformOptions(kLevels));
     Far::PrimvarRefinerReal<double> const primvars(*deep);
     std::vector<RefinedPoint> points(static_cast<size_t>(scene.cage.numVertices));
-    for (size_t v = 0; v < points.size(); ++v) points[v].p = Eigen::Map<Eigen::Vector3d const>(&scene.positions[3 * v]);
+    for (size_t v = 0; v < points.size(); ++v)
+        points[v].p = Eigen::Map<Eigen::Vector3d const>(&scene.positions[3 * v]);
     for (int level = 1; level <= kLevels; ++level) {
         std::vector<RefinedPoint> fine(static_cast<size_t>(deep->GetLevel(level).GetNumVertices()));
         primvars.Interpolate(level, points, fine);
@@ -185,10 +196,12 @@ TEST_P(LimitSurfaceOnCage, CornersAreWhereRefinementLeads) {
         auto const vertices = base.GetFaceVertices(face);
         for (int corner = 0; corner < vertices.size(); ++corner) {
             Index vertex = vertices[corner];
-            for (int level = 0; level < kLevels; ++level) vertex = deep->GetLevel(level).GetVertexChildVertex(vertex);
+            for (int level = 0; level < kLevels; ++level)
+                vertex = deep->GetLevel(level).GetVertexChildVertex(vertex);
             auto const place = eval::GetCornerPlace(surface, face, corner);
             auto const sample = eval::EvaluateSample(tree, place.domain, place.s, place.t, 1.0);
-            EXPECT_LT((sample.position - points[vertex].p).norm(), 2e-3 * size) << "face " << face << " corner " << corner;
+            EXPECT_LT((sample.position - points[vertex].p).norm(), 2e-3 * size)
+                << "face " << face << " corner " << corner;
             EXPECT_TRUE(sample.normal.allFinite());
         }
     }
@@ -197,7 +210,8 @@ TEST_P(LimitSurfaceOnCage, CornersAreWhereRefinementLeads) {
 // -------- extraordinary vertices: the figures of bake.md
 
 /// Mean curvature along the diagonal of the fan's first face at distances 2^-level.
-std::vector<double> MeanTowardsVertex(int valence, double cup, double saddle, int fromLevel, int toLevel) {
+std::vector<double> MeanTowardsVertex(int valence, double cup, double saddle, int fromLevel,
+                                      int toLevel) {
     engine::Scene const scene = test::MakeFan(valence, Sdc::SCHEME_CATMARK, cup, saddle);
     auto const refiner = far_ext::CreateRefiner(scene.cage);
     LimitSurface const surface(*refiner);
@@ -220,15 +234,17 @@ struct GrowthCase {
 
 class CurvatureGrowth : public testing::TestWithParam<GrowthCase> {};
 
-// Cup mode: from level to level curvature grows by mu/lambda^2, with lambda the subdominant and mu the
-// next rotation-free eigenvalue of Catmull-Clark's matrix: 0.991 at valence 3, 1.066 at 5, 1.186 at 8.
+// Cup mode: from level to level curvature grows by mu/lambda^2, with lambda the subdominant and mu
+// the next rotation-free eigenvalue of Catmull-Clark's matrix: 0.991 at valence 3, 1.066 at 5,
+// 1.186 at 8.
 TEST_P(CurvatureGrowth, OfTheCupModeIsThatOfTheEigenvalues) {
     auto const h = MeanTowardsVertex(GetParam().valence, -0.1, 0.0, 10, 14);
     for (size_t i = 1; i < h.size(); ++i) EXPECT_NEAR(h[i] / h[i - 1], GetParam().factor, 1.5e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Valences, CurvatureGrowth,
-                         testing::Values(GrowthCase{3, 0.991}, GrowthCase{5, 1.066}, GrowthCase{8, 1.186}),
+                         testing::Values(GrowthCase{3, 0.991}, GrowthCase{5, 1.066},
+                                         GrowthCase{8, 1.186}),
                          [](testing::TestParamInfo<GrowthCase> const& growth) {
                              return "valence" + std::to_string(growth.param.valence);
                          });
@@ -239,8 +255,10 @@ TEST(LimitSurface, SamplesNearerThanTheLimitAreMovedAndSaySo) {
     LimitSurface const surface(*refiner);
     FaceTree tree(surface, scene.positions, 3);
     tree.Bind(0);
-    auto const edge = eval::EvaluateSample(tree, 0, 0x1p-16, 0x1p-17, 1.0);   // at the limit distance
-    auto const near = eval::EvaluateSample(tree, 0, 0x1p-20, 0x1p-21, 1.0);   // same direction, nearer
+    auto const edge =
+        eval::EvaluateSample(tree, 0, 0x1p-16, 0x1p-17, 1.0);  // at the limit distance
+    auto const near =
+        eval::EvaluateSample(tree, 0, 0x1p-20, 0x1p-21, 1.0);  // same direction, nearer
     auto const corner = eval::EvaluateSample(tree, 0, 0.0, 0.0, 1.0);
     EXPECT_FALSE(edge.isMoved);
     EXPECT_TRUE(near.isMoved);
@@ -248,12 +266,13 @@ TEST(LimitSurface, SamplesNearerThanTheLimitAreMovedAndSaySo) {
     EXPECT_NEAR(near.curvature.k1, edge.curvature.k1, 1e-9 * std::abs(edge.curvature.k1));
     // Position and normal are those of the place itself.
     EXPECT_LT((near.position - corner.position).norm(), 1e-4);
-    EXPECT_LT((near.position - corner.position).norm(), 0.2 * (edge.position - corner.position).norm());
+    EXPECT_LT((near.position - corner.position).norm(),
+              0.2 * (edge.position - corner.position).norm());
     EXPECT_NEAR(near.normal.dot(corner.normal), 1.0, 1e-7);
 }
 
-// A quadratic height field's limit on a regular grid is a paraboloid; its curvature at the apex is 2a in
-// every direction (z = a r^2, seen from above: curved away from the normal, so -2a).
+// A quadratic height field's limit on a regular grid is a paraboloid; its curvature at the apex is
+// 2a in every direction (z = a r^2, seen from above: curved away from the normal, so -2a).
 TEST(LimitSurface, AParaboloidHasItsCurvature) {
     engine::Scene const scene = test::MakeFan(4, Sdc::SCHEME_CATMARK, 0.1, 0.0);
     auto const refiner = far_ext::CreateRefiner(scene.cage);
@@ -274,10 +293,12 @@ TEST_P(LimitSurfaceOnCage, RotatesWithItsCage) {
     engine::Scene scene = test::LoadData("opensubdiv_shapes/" + GetParam());
     if (GetParam().starts_with("loop")) scene.cage.scheme = Sdc::SCHEME_LOOP;
     Eigen::Matrix3d const R = (Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX()) *
-                               Eigen::AngleAxisd(-1.1, Eigen::Vector3d::UnitZ())).toRotationMatrix();
+                               Eigen::AngleAxisd(-1.1, Eigen::Vector3d::UnitZ()))
+                                  .toRotationMatrix();
     std::vector<double> turned = scene.positions;
     for (size_t v = 0; v < turned.size(); v += 3) {
-        Eigen::Map<Eigen::Vector3d>{&turned[v]} = R * Eigen::Map<Eigen::Vector3d const>(&scene.positions[v]);
+        Eigen::Map<Eigen::Vector3d>{&turned[v]} =
+            R * Eigen::Map<Eigen::Vector3d const>(&scene.positions[v]);
     }
     auto const refiner = far_ext::CreateRefiner(scene.cage);
     LimitSurface const surface(*refiner);
@@ -287,11 +308,13 @@ TEST_P(LimitSurfaceOnCage, RotatesWithItsCage) {
         if (!surface.HasLimit(face)) continue;
         before.Bind(face);
         after.Bind(face);
-        auto const a = eval::EvaluateSample(before, 0, 0.3, 0.4, 1.0), b = eval::EvaluateSample(after, 0, 0.3, 0.4, 1.0);
+        auto const a = eval::EvaluateSample(before, 0, 0.3, 0.4, 1.0),
+                   b = eval::EvaluateSample(after, 0, 0.3, 0.4, 1.0);
         EXPECT_LT((R * a.position - b.position).norm(), 1e-12 * size);
         if (a.isDegenerate || a.tangentS.cross(a.tangentT).norm() < 1e-9 * size * size) continue;
         EXPECT_LT((R * a.normal - b.normal).norm(), 1e-9);
-        EXPECT_NEAR(a.curvature.mean, b.curvature.mean, 1e-8 * (std::abs(a.curvature.k1) + std::abs(a.curvature.k2) + 1 / size));
+        EXPECT_NEAR(a.curvature.mean, b.curvature.mean,
+                    1e-8 * (std::abs(a.curvature.k1) + std::abs(a.curvature.k2) + 1 / size));
     }
 }
 

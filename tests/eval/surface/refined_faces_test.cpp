@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/surface/refined_faces.h"
 
 #include <gtest/gtest.h>
@@ -12,9 +13,11 @@ namespace {
 
 class RefinedFacesOf : public testing::TestWithParam<char const*> {};
 INSTANTIATE_TEST_SUITE_P(Cages, RefinedFacesOf,
-                         testing::Values("catmark_cube_creases0.obj", "catmark_nonquads.obj", "catmark_hole_test1.obj",
-                                         "catmark_edgenone.obj", "catmark_edgeonly.obj", "catmark_dart_edgecorner.obj",
-                                         "loop_cube_creases0.obj", "loop_saddle_edgecorner.obj", "bilinear_cube.obj"),
+                         testing::Values("catmark_cube_creases0.obj", "catmark_nonquads.obj",
+                                         "catmark_hole_test1.obj", "catmark_edgenone.obj",
+                                         "catmark_edgeonly.obj", "catmark_dart_edgecorner.obj",
+                                         "loop_cube_creases0.obj", "loop_saddle_edgecorner.obj",
+                                         "bilinear_cube.obj"),
                          [](auto const& mesh) {
                              std::string const name = mesh.param;
                              return name.substr(0, name.find('.'));
@@ -37,14 +40,17 @@ TEST_P(RefinedFacesOf, TheRefinedCageHasTheSameLimitThere) {
             if (!surface.HasLimit(face)) continue;
             tree.Bind(face);
             for (int domain = 0; domain < surface.GetNumDomains(face); ++domain) {
-                for (auto const& [s, t] : {std::pair{0.21, 0.17}, {0.06, 0.9}, {0.55, 0.3}, {0.4, 0.38}}) {
+                for (auto const& [s, t] :
+                     {std::pair{0.21, 0.17}, {0.06, 0.9}, {0.55, 0.3}, {0.4, 0.38}}) {
                     auto const place = faces.Find(face, domain, s, t);
                     ASSERT_LT(place.face, fineSurface.GetNumFaces());
                     ASSERT_TRUE(fineSurface.HasLimit(place.face));
                     fineTree.Bind(place.face);
                     for (int c = 0; c < 3; ++c) {
-                        EXPECT_NEAR(eval::EvaluateChannel(tree, domain, s, t, c),
-                                    eval::EvaluateChannel(fineTree, place.domain, place.s, place.t, c), 1e-9)
+                        EXPECT_NEAR(
+                            eval::EvaluateChannel(tree, domain, s, t, c),
+                            eval::EvaluateChannel(fineTree, place.domain, place.s, place.t, c),
+                            1e-9)
                             << "face " << face << " domain " << domain << " level " << levels;
                     }
                     ++numPlaces;

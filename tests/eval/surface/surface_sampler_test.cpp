@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "eval/surface/surface_sampler.h"
 
 #include <cmath>
@@ -18,7 +19,8 @@ using eval::Quantity;
 using eval::SurfaceSampler;
 
 /// Samples n places of every face: planes by channel, in a fixed order.
-std::vector<std::vector<float>> SampleAll(engine::Scene const& scene, Quantity quantity, int perSide) {
+std::vector<std::vector<float>> SampleAll(engine::Scene const& scene, Quantity quantity,
+                                          int perSide) {
     auto const refiner = far_ext::CreateRefiner(scene.cage);
     LimitSurface const surface(*refiner);
     FaceTree tree(surface, scene.positions, 3);
@@ -39,11 +41,13 @@ std::vector<std::vector<float>> SampleAll(engine::Scene const& scene, Quantity q
         for (int domain = 0; domain < surface.GetNumDomains(face); ++domain) {
             size_t const start = planes[0].size();
             for (auto& plane : planes) plane.resize(start + s.size());
-            sampler.Evaluate(domain, s, t, [&](std::span<int const> samples, float const* p, size_t stride) {
-                for (size_t c = 0; c < planes.size(); ++c) {
-                    for (size_t i = 0; i < samples.size(); ++i) planes[c][start + samples[i]] = p[c * stride + i];
-                }
-            });
+            sampler.Evaluate(domain, s, t,
+                             [&](std::span<int const> samples, float const* p, size_t stride) {
+                                 for (size_t c = 0; c < planes.size(); ++c) {
+                                     for (size_t i = 0; i < samples.size(); ++i)
+                                         planes[c][start + samples[i]] = p[c * stride + i];
+                                 }
+                             });
         }
     }
     return planes;
@@ -63,7 +67,8 @@ TEST(SurfaceSampler, FloatAgreesWithDoubleOnARegularMesh) {
         for (int j = 0; j < 5; ++j) {
             for (int i = 0; i < 5; ++i, ++at) {
                 auto const x = eval::EvaluateSample(tree, 0, (i + 0.31) / 5, (j + 0.43) / 5, 1.0);
-                worst = std::max(worst, std::abs(static_cast<double>(planes[eval::kMean][at]) - x.curvature.mean));
+                worst = std::max(worst, std::abs(static_cast<double>(planes[eval::kMean][at]) -
+                                                 x.curvature.mean));
                 largest = std::max(largest, std::abs(x.curvature.mean));
             }
         }
@@ -76,13 +81,15 @@ struct AccuracyCase {
     int valence;
 };
 class AccuracyAtVertex : public testing::TestWithParam<AccuracyCase> {};
-INSTANTIATE_TEST_SUITE_P(Fans, AccuracyAtVertex,
-                         testing::Values(AccuracyCase{Sdc::SCHEME_CATMARK, 3}, AccuracyCase{Sdc::SCHEME_CATMARK, 5},
-                                         AccuracyCase{Sdc::SCHEME_CATMARK, 8}, AccuracyCase{Sdc::SCHEME_LOOP, 3},
-                                         AccuracyCase{Sdc::SCHEME_LOOP, 6}, AccuracyCase{Sdc::SCHEME_LOOP, 9}));
+INSTANTIATE_TEST_SUITE_P(
+    Fans, AccuracyAtVertex,
+    testing::Values(AccuracyCase{Sdc::SCHEME_CATMARK, 3}, AccuracyCase{Sdc::SCHEME_CATMARK, 5},
+                    AccuracyCase{Sdc::SCHEME_CATMARK, 8}, AccuracyCase{Sdc::SCHEME_LOOP, 3},
+                    AccuracyCase{Sdc::SCHEME_LOOP, 6}, AccuracyCase{Sdc::SCHEME_LOOP, 9}));
 
-// At every depth: a sample at 2^-depth from the vertex has the curvature that double finds, to 2e-6 of its
-// own size. (Relative to the mesh's largest value the bound is 1e-6; at valence 3 the values are alike.)
+// At every depth: a sample at 2^-depth from the vertex has the curvature that double finds, to 2e-6
+// of its own size. (Relative to the mesh's largest value the bound is 1e-6; at valence 3 the values
+// are alike.)
 TEST_P(AccuracyAtVertex, CurvatureKeepsItsDigitsWithDepth) {
     engine::Scene fan = test::MakeFan(GetParam().valence, GetParam().scheme, 0.1, 0.03);
     for (size_t v = 0; v < fan.positions.size(); v += 3) {  // tilted and moved off the origin
@@ -101,9 +108,12 @@ TEST_P(AccuracyAtVertex, CurvatureKeepsItsDigitsWithDepth) {
         auto const expected = eval::EvaluateSample(reference, 0, s[0], t[0], 1.0).curvature;
         sampler.Evaluate(0, s, t, [&](std::span<int const>, float const* p, size_t stride) {
             double const scale = std::max(std::abs(expected.k1), std::abs(expected.k2));
-            EXPECT_NEAR(static_cast<double>(p[eval::kK1 * stride]), expected.k1, 2e-6 * scale) << "depth " << depth;
-            EXPECT_NEAR(static_cast<double>(p[eval::kK2 * stride]), expected.k2, 2e-6 * scale) << "depth " << depth;
-            EXPECT_NEAR(static_cast<double>(p[eval::kMean * stride]), expected.mean, 2e-6 * scale) << "depth " << depth;
+            EXPECT_NEAR(static_cast<double>(p[eval::kK1 * stride]), expected.k1, 2e-6 * scale)
+                << "depth " << depth;
+            EXPECT_NEAR(static_cast<double>(p[eval::kK2 * stride]), expected.k2, 2e-6 * scale)
+                << "depth " << depth;
+            EXPECT_NEAR(static_cast<double>(p[eval::kMean * stride]), expected.mean, 2e-6 * scale)
+                << "depth " << depth;
         });
     }
 }
@@ -128,7 +138,8 @@ TEST_P(SurfaceSamplerOnMesh, SameBitsForEveryInstructionSet) {
         if (!eval::SelectInstructionSet(set)) continue;  // this CPU lacks it
         auto const planes = SampleAll(scene, Quantity::Tangents, 5);
         for (size_t c = 0; c < planes.size(); ++c) {
-            EXPECT_EQ(0, std::memcmp(planes[c].data(), expected[c].data(), planes[c].size() * sizeof(float)))
+            EXPECT_EQ(0, std::memcmp(planes[c].data(), expected[c].data(),
+                                     planes[c].size() * sizeof(float)))
                 << eval::GetName(set) << " channel " << c;
         }
     }
@@ -140,7 +151,8 @@ TEST_P(SurfaceSamplerOnMesh, EveryValueIsFiniteAndNormalsHaveLengthOne) {
     for (size_t i = 0; i < planes[0].size(); ++i) {
         for (auto const& plane : planes) ASSERT_TRUE(std::isfinite(plane[i]));
         double squares = 0.0;
-        for (int c = 0; c < 3; ++c) squares += std::pow(static_cast<double>(planes[eval::kNormalX + c][i]), 2);
+        for (int c = 0; c < 3; ++c)
+            squares += std::pow(static_cast<double>(planes[eval::kNormalX + c][i]), 2);
         ASSERT_NEAR(squares, 1.0, 1e-5);
     }
 }
@@ -148,9 +160,12 @@ TEST_P(SurfaceSamplerOnMesh, EveryValueIsFiniteAndNormalsHaveLengthOne) {
 // k1 >= k2, their mean is H, their product K, and d is a unit tangent.
 TEST_P(SurfaceSamplerOnMesh, CurvaturesBelongTogether) {
     auto const planes = SampleAll(Load(), Quantity::Direction, 6);
-    auto const at = [&](int c, size_t i) { return static_cast<double>(planes[static_cast<size_t>(c)][i]); };
+    auto const at = [&](int c, size_t i) {
+        return static_cast<double>(planes[static_cast<size_t>(c)][i]);
+    };
     for (size_t i = 0; i < planes[0].size(); ++i) {
-        double const k1 = at(eval::kK1, i), k2 = at(eval::kK2, i), scale = std::max({std::abs(k1), std::abs(k2), 1e-3});
+        double const k1 = at(eval::kK1, i), k2 = at(eval::kK2, i),
+                     scale = std::max({std::abs(k1), std::abs(k2), 1e-3});
         ASSERT_GE(k1, k2);
         ASSERT_NEAR(at(eval::kMean, i), 0.5 * (k1 + k2), 1e-5 * scale);
         ASSERT_NEAR(at(eval::kGaussian, i), k1 * k2, 1e-5 * scale * scale);
@@ -165,8 +180,9 @@ TEST_P(SurfaceSamplerOnMesh, CurvaturesBelongTogether) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, SurfaceSamplerOnMesh,
-                         testing::Values("fan7", "loop-fan5", "loop-torus", "catmark_gregory_test6.obj",
-                                         "catmark_nonquads.obj", "catmark_dart_edgecorner.obj",
+                         testing::Values("fan7", "loop-fan5", "loop-torus",
+                                         "catmark_gregory_test6.obj", "catmark_nonquads.obj",
+                                         "catmark_dart_edgecorner.obj",
                                          "catmark_cubes_semisharp.obj", "catmark_nonman_edges.obj"),
                          [](testing::TestParamInfo<char const*> const& mesh) {
                              std::string name = mesh.param;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/differential/butterfly.h"
 
 #include <numeric>
@@ -11,7 +12,8 @@ namespace limn {
 namespace {
 
 class ButterflyOf : public testing::TestWithParam<char const*> {};
-INSTANTIATE_TEST_SUITE_P(References, ButterflyOf, testing::Values("icosa", "torustri", "gridholetri"));
+INSTANTIATE_TEST_SUITE_P(References, ButterflyOf,
+                         testing::Values("icosa", "torustri", "gridholetri"));
 
 // Two steps of an independent implementation: valence 5, regular, boundaries.
 TEST_P(ButterflyOf, TheReferenceIsMet) {
@@ -20,7 +22,8 @@ TEST_P(ButterflyOf, TheReferenceIsMet) {
     auto points = scene.positions;
     for (int level : {1, 2}) points = test::Apply(far_ext::BuildButterfly(*refiner, level), points);
     auto const reference = test::LoadPoints(std::string(GetParam()) + "_sub_butterfly_L2");
-    EXPECT_LT(test::LargestDifference(points, reference), 1e-13 * test::BoxDiagonal(scene.positions));
+    EXPECT_LT(test::LargestDifference(points, reference),
+              1e-13 * test::BoxDiagonal(scene.positions));
 }
 
 class ButterflyAt : public testing::TestWithParam<int> {};
@@ -31,7 +34,8 @@ TEST_P(ButterflyAt, RowsSumToOneAndVerticesStay) {
     auto const refiner = test::MakeRefiner(scene, 1);
     auto const rows = far_ext::BuildButterfly(*refiner, 1);
     for (int row = 0; row < rows.GetNumRows(); ++row) {
-        EXPECT_NEAR(std::accumulate(rows.weights.begin() + rows.offsets[row], rows.weights.begin() + rows.offsets[row + 1], 0.0),
+        EXPECT_NEAR(std::accumulate(rows.weights.begin() + rows.offsets[row],
+                                    rows.weights.begin() + rows.offsets[row + 1], 0.0),
                     1.0, 1e-15);
     }
     auto const fine = test::Apply(rows, scene.positions);
@@ -51,19 +55,23 @@ TEST(Butterfly, QuadraticsAreMetOnARegularGrid) {
 }
 
 TEST(Butterfly, ThreeFacesAtAnEdgeAreRefused) {
-    auto const scene = test::MakeScene({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}},
-                                       Sdc::SCHEME_LOOP);
+    auto const scene = test::MakeScene({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1},
+                                       {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}, Sdc::SCHEME_LOOP);
     auto const refiner = test::MakeRefiner(scene, 1);
     EXPECT_NE(test::RefusalOf([&] { far_ext::BuildButterfly(*refiner, 1); }), "");
 }
 
 // The other rules' tables are what OpenSubdiv does to values.
 TEST(SubdivisionRows, AreOpenSubdivs) {
-    for (auto const& scene : {test::MakeCube(), test::MakeBipyramid(7), test::MakeFan(5, Sdc::SCHEME_CATMARK, 0.1, 0.2)}) {
+    for (auto const& scene : {test::MakeCube(), test::MakeBipyramid(7),
+                              test::MakeFan(5, Sdc::SCHEME_CATMARK, 0.1, 0.2)}) {
         auto const refiner = test::MakeRefiner(scene, 2);
-        auto const rows = far_ext::BuildSubdivisionRows(*refiner, 1, far_ext::SubdivisionRule::Scheme);
+        auto const rows =
+            far_ext::BuildSubdivisionRows(*refiner, 1, far_ext::SubdivisionRule::Scheme);
         auto const fine = test::Apply(rows, scene.positions);
-        EXPECT_LT(test::LargestDifference(fine, eval::RefineValues<3>(*refiner, 1, scene.positions)), 1e-15);
+        EXPECT_LT(
+            test::LargestDifference(fine, eval::RefineValues<3>(*refiner, 1, scene.positions)),
+            1e-15);
     }
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/differential/laplacian.h"
 
 #include <numeric>
@@ -12,18 +13,21 @@ namespace {
 using far_ext::SparseRows;
 
 std::vector<engine::Scene> AllMeshes() {
-    std::vector<engine::Scene> scenes{test::MakeCube(), test::MakeTorus(7, 5), test::MakeTriangleTorus(6, 5),
+    std::vector<engine::Scene> scenes{test::MakeCube(), test::MakeTorus(7, 5),
+                                      test::MakeTriangleTorus(6, 5),
                                       test::MakeFan(5, Sdc::SCHEME_CATMARK, 0.1, 0.05)};
     for (int n = 3; n <= 12; ++n) scenes.push_back(test::MakeBipyramid(n));
-    for (char const* name : {"icosa", "gridholetri", "torustri"}) scenes.push_back(test::LoadDifferential(name, Sdc::SCHEME_LOOP));
+    for (char const* name : {"icosa", "gridholetri", "torustri"})
+        scenes.push_back(test::LoadDifferential(name, Sdc::SCHEME_LOOP));
     return scenes;
 }
 
 double LargestRowSum(SparseRows const& rows) {
     double worst = 0.0;
     for (int row = 0; row < rows.GetNumRows(); ++row) {
-        worst = std::max(worst, std::abs(std::accumulate(rows.weights.begin() + rows.offsets[row],
-                                                         rows.weights.begin() + rows.offsets[row + 1], 0.0)));
+        worst = std::max(
+            worst, std::abs(std::accumulate(rows.weights.begin() + rows.offsets[row],
+                                            rows.weights.begin() + rows.offsets[row + 1], 0.0)));
     }
     return worst;
 }
@@ -33,7 +37,8 @@ TEST(CombinatorialLaplacian, ConstantsGoToZero) {
     for (auto const& scene : AllMeshes()) {
         auto const refiner = test::MakeRefiner(scene, 2);
         for (int level = 0; level <= 2; ++level) {
-            EXPECT_LT(LargestRowSum(far_ext::BuildCombinatorialLaplacian(refiner->GetLevel(level))), 1e-15);
+            EXPECT_LT(LargestRowSum(far_ext::BuildCombinatorialLaplacian(refiner->GetLevel(level))),
+                      1e-15);
         }
     }
 }
@@ -59,22 +64,28 @@ TEST(CombinatorialLaplacian, DegreesAreTheLeftNullVectorOfAClosedMesh) {
 TEST(CombinatorialLaplacian, PointsOutwards) {
     auto const scene = test::MakeCube();
     auto const refiner = test::MakeRefiner(scene, 0);
-    auto const delta = test::Apply(far_ext::BuildCombinatorialLaplacian(refiner->GetLevel(0)), scene.positions);
+    auto const delta =
+        test::Apply(far_ext::BuildCombinatorialLaplacian(refiner->GetLevel(0)), scene.positions);
     for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(delta[3 * 6 + c], 2.0 / 3.0, 1e-15);
 }
 
 TEST(Boundary, EachLoopIsFoundOnce) {
-    auto const refiner = test::MakeRefiner(test::LoadDifferential("gridholetri", Sdc::SCHEME_LOOP), 2);
+    auto const refiner =
+        test::MakeRefiner(test::LoadDifferential("gridholetri", Sdc::SCHEME_LOOP), 2);
     auto const loops = far_ext::FindBoundaryLoops(refiner->GetLevel(2));
     ASSERT_EQ(loops.size(), 2u);
-    for (auto const& loop : loops) EXPECT_EQ(loop.front(), *std::min_element(loop.begin(), loop.end()));
+    for (auto const& loop : loops)
+        EXPECT_EQ(loop.front(), *std::min_element(loop.begin(), loop.end()));
 }
 
 // Two triangles that touch in a vertex.
 TEST(Boundary, CurvesThatMeetAreRefused) {
-    auto const scene = test::MakeScene({0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1, 0}, {{0, 1, 2}, {0, 3, 4}}, Sdc::SCHEME_LOOP);
+    auto const scene = test::MakeScene({0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1, 0},
+                                       {{0, 1, 2}, {0, 3, 4}}, Sdc::SCHEME_LOOP);
     auto const refiner = test::MakeRefiner(scene, 0);
-    EXPECT_NE(test::RefusalOf([&] { far_ext::BuildCombinatorialLaplacian(refiner->GetLevel(0)); }).find("vertex 0 has 4 boundary edges"),
+    EXPECT_NE(test::RefusalOf([&] {
+                  far_ext::BuildCombinatorialLaplacian(refiner->GetLevel(0));
+              }).find("vertex 0 has 4 boundary edges"),
               std::string::npos);
 }
 
@@ -86,13 +97,16 @@ TEST(CotangentLaplacian, IsTwiceTheMeanCurvatureNormalOfASphere) {
     auto const points = test::SubdivideToSphere(*refiner, base.positions);
     auto const laplacian = far_ext::BuildCotangentLaplacian(level, points);
     auto const delta = test::Apply(laplacian.rows, points);
-    for (size_t i = 0; i < delta.size(); ++i) EXPECT_NEAR(delta[i] / laplacian.areas[i / 3], 2.0 * points[i], 0.02);
+    for (size_t i = 0; i < delta.size(); ++i)
+        EXPECT_NEAR(delta[i] / laplacian.areas[i / 3], 2.0 * points[i], 0.02);
     EXPECT_LT(LargestRowSum(laplacian.rows), 1e-13);
     // Mixed areas tile the mesh: its area is that of the sphere less a little.
-    EXPECT_NEAR(std::accumulate(laplacian.areas.begin(), laplacian.areas.end(), 0.0), 4.0 * std::acos(-1.0), 0.1);
+    EXPECT_NEAR(std::accumulate(laplacian.areas.begin(), laplacian.areas.end(), 0.0),
+                4.0 * std::acos(-1.0), 0.1);
 }
 
-// On a sphere of radius 1 the mesh Laplace operator is 2 n, too, up to the unevenness of its triangles.
+// On a sphere of radius 1 the mesh Laplace operator is 2 n, too, up to the unevenness of its
+// triangles.
 TEST(HeatLaplacian, IsTwiceTheMeanCurvatureNormalOfASphere) {
     auto const base = test::LoadDifferential("icosa", Sdc::SCHEME_LOOP);
     auto const refiner = test::MakeRefiner(base, 3);
@@ -112,21 +126,26 @@ TEST(HeatLaplacian, TheCutKeepsItsBound) {
     auto const laplacian = far_ext::BuildHeatLaplacian(refiner->GetLevel(3), points, &kernel);
     auto const areas = far_ext::BuildCotangentLaplacian(refiner->GetLevel(3), points).areas;
     double const total = std::accumulate(areas.begin(), areas.end(), 0.0);
-    double weightAtRadius = std::exp(-kernel.radius * kernel.radius / (4 * kernel.time)) / (4 * std::acos(-1.0) * kernel.time * kernel.time);
+    double weightAtRadius = std::exp(-kernel.radius * kernel.radius / (4 * kernel.time)) /
+                            (4 * std::acos(-1.0) * kernel.time * kernel.time);
     EXPECT_NEAR(kernel.truncation, weightAtRadius * total, 1e-6 * kernel.truncation);
-    EXPECT_LT(laplacian.rows.weights.size(), 400u * static_cast<size_t>(laplacian.rows.GetNumRows()));
+    EXPECT_LT(laplacian.rows.weights.size(),
+              400u * static_cast<size_t>(laplacian.rows.GetNumRows()));
 }
 
 TEST(AreaLaplacians, ATriangleWithoutAreaIsNamed) {
     auto scene = test::MakeBipyramid(5);
-    scene.positions[6] = scene.positions[9], scene.positions[7] = scene.positions[10];  // vertex 2 onto 3
+    scene.positions[6] = scene.positions[9],
+    scene.positions[7] = scene.positions[10];  // vertex 2 onto 3
     auto const refiner = test::MakeRefiner(scene, 0);
-    auto const refusal = test::RefusalOf([&] { far_ext::BuildCotangentLaplacian(refiner->GetLevel(0), scene.positions); });
+    auto const refusal = test::RefusalOf(
+        [&] { far_ext::BuildCotangentLaplacian(refiner->GetLevel(0), scene.positions); });
     EXPECT_NE(refusal.find("face 0 (vertices 0, 2, 3) has no area"), std::string::npos) << refusal;
     auto const cube = test::MakeCube();
     auto const quads = test::MakeRefiner(cube, 0);
-    EXPECT_EQ(test::CodeOf([&] { far_ext::BuildHeatLaplacian(quads->GetLevel(0), cube.positions); }),
-              static_cast<int>(ErrorCode::Unsupported));
+    EXPECT_EQ(
+        test::CodeOf([&] { far_ext::BuildHeatLaplacian(quads->GetLevel(0), cube.positions); }),
+        static_cast<int>(ErrorCode::Unsupported));
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/forms/edge_limits.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,8 @@ namespace {
 
 double Apply(far_ext::WeightRow const& row, std::vector<double> const& values) {
     double sum = 0.0;
-    for (auto const& [index, weight] : row.GetEntries()) sum += weight * values[static_cast<size_t>(index)];
+    for (auto const& [index, weight] : row.GetEntries())
+        sum += weight * values[static_cast<size_t>(index)];
     return sum;
 }
 
@@ -22,7 +24,8 @@ double Apply(far_ext::WeightRow const& row, std::vector<double> const& values) {
 std::vector<std::pair<std::string, engine::Scene>> MakeMeshes() {
     std::vector<std::pair<std::string, engine::Scene>> meshes;
     for (auto& [name, scene] : test::MakeFormMeshes()) {
-        bool const isSemiSharp = !scene.cage.creaseSharpness.empty() && scene.cage.creaseSharpness[0] < 10.0f;
+        bool const isSemiSharp =
+            !scene.cage.creaseSharpness.empty() && scene.cage.creaseSharpness[0] < 10.0f;
         if (isSemiSharp || name == "quad disk 2") continue;
         scene.cage.cornerVertices.clear();
         scene.cage.cornerSharpness.clear();
@@ -34,7 +37,8 @@ std::vector<std::pair<std::string, engine::Scene>> MakeMeshes() {
 class EdgeLimitsWith : public testing::TestWithParam<int> {
 protected:
     void Set(engine::Scene& scene) const {
-        scene.cage.options.SetVtxBoundaryInterpolation(static_cast<Sdc::Options::VtxBoundaryInterpolation>(GetParam()));
+        scene.cage.options.SetVtxBoundaryInterpolation(
+            static_cast<Sdc::Options::VtxBoundaryInterpolation>(GetParam()));
     }
 };
 
@@ -50,14 +54,19 @@ TEST_P(EdgeLimitsWith, GradientsAddUpToDifferencesOfLimits) {
         std::vector<double> form;
         for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
             auto const ends = level.GetEdgeVertices(edge);
-            form.push_back(f[static_cast<size_t>(std::max(ends[0], ends[1]))] - f[static_cast<size_t>(std::min(ends[0], ends[1]))]);
+            form.push_back(f[static_cast<size_t>(std::max(ends[0], ends[1]))] -
+                           f[static_cast<size_t>(std::min(ends[0], ends[1]))]);
         }
-        Eigen::VectorXd const limits = A.AsMatrix() * Eigen::Map<Eigen::VectorXd const>(f.data(), static_cast<Eigen::Index>(f.size()));
+        Eigen::VectorXd const limits =
+            A.AsMatrix() *
+            Eigen::Map<Eigen::VectorXd const>(f.data(), static_cast<Eigen::Index>(f.size()));
         far_ext::EdgeLimits edgeLimits(*refiner, 1);
         for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
             auto const ends = level.GetEdgeVertices(edge);
-            double const expected = limits[std::max(ends[0], ends[1])] - limits[std::min(ends[0], ends[1])];
-            ASSERT_NEAR(Apply(edgeLimits.Find(edge), form), expected, 1e-11) << name << ", edge " << edge;
+            double const expected =
+                limits[std::max(ends[0], ends[1])] - limits[std::min(ends[0], ends[1])];
+            ASSERT_NEAR(Apply(edgeLimits.Find(edge), form), expected, 1e-11)
+                << name << ", edge " << edge;
         }
     }
 }
@@ -80,20 +89,27 @@ TEST_P(EdgeLimitsWith, HalvesAddUp) {
             double sum = 0.0;
             for (int side : {0, 1}) {
                 Index const vertex = level.GetVertexChildVertex(ends[side]);
-                bool const leaves = (side == 0) == (ends[0] < ends[1]);  // the walk from low to high starts at this end
-                sum += (leaves ? 1.0 : -1.0) * (vertex < middle ? 1.0 : -1.0) * Apply(finer.Find(halves[side]), next);
+                bool const leaves =
+                    (side == 0) ==
+                    (ends[0] < ends[1]);  // the walk from low to high starts at this end
+                sum += (leaves ? 1.0 : -1.0) * (vertex < middle ? 1.0 : -1.0) *
+                       Apply(finer.Find(halves[side]), next);
             }
             ASSERT_NEAR(Apply(coarse.Find(edge), form), sum, 1e-11) << name << ", edge " << edge;
         }
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Boundaries, EdgeLimitsWith,
-                         testing::Values(static_cast<int>(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY), static_cast<int>(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER)));
+INSTANTIATE_TEST_SUITE_P(
+    Boundaries, EdgeLimitsWith,
+    testing::Values(static_cast<int>(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY),
+                    static_cast<int>(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER)));
 
 engine::Scene WithCrease(engine::Scene scene) {
     for (size_t corner : {0u, 1u}) {  // two sides of the first face: darts at both ends
-        scene.cage.creaseVertexPairs.insert(scene.cage.creaseVertexPairs.end(), {scene.cage.faceVertices[corner], scene.cage.faceVertices[corner + 1]});
+        scene.cage.creaseVertexPairs.insert(
+            scene.cage.creaseVertexPairs.end(),
+            {scene.cage.faceVertices[corner], scene.cage.faceVertices[corner + 1]});
         scene.cage.creaseSharpness.push_back(Sdc::Crease::SHARPNESS_INFINITE);
     }
     return scene;
@@ -101,8 +117,10 @@ engine::Scene WithCrease(engine::Scene scene) {
 
 // What six refinements add up to, closed, open and creased: the limit but for what they leave.
 TEST(EdgeLimits, AgreeWithRefining) {
-    for (auto const& scene : {test::MakeIrregularTriangles(5, 4, 2), test::MakeCube(), test::MakeLattice(2, 2, Sdc::SCHEME_LOOP), test::MakeGridWithHole(3, 3),
-                              WithCrease(test::MakeTorus(5, 4)), WithCrease(test::MakeIrregularTriangles(5, 4, 2))}) {
+    for (auto const& scene :
+         {test::MakeIrregularTriangles(5, 4, 2), test::MakeCube(),
+          test::MakeLattice(2, 2, Sdc::SCHEME_LOOP), test::MakeGridWithHole(3, 3),
+          WithCrease(test::MakeTorus(5, 4)), WithCrease(test::MakeIrregularTriangles(5, 4, 2))}) {
         auto const refiner = test::MakeRefiner(scene, 7);
         auto const level = refiner->GetLevel(1);
         auto const noise = test::MakeRandomValues(static_cast<size_t>(level.GetNumEdges()), 5);
@@ -125,14 +143,17 @@ TEST(EdgeLimits, AgreeWithRefining) {
                     auto const ends = here.GetEdgeVertices(piece);
                     for (int side : {0, 1}) {
                         bool const leaves = (side == 0) == (ends[0] < ends[1]);
-                        bool const isLow = here.GetVertexChildVertex(ends[side]) < here.GetEdgeChildVertex(piece);
-                        children.emplace_back(here.GetEdgeChildEdges(piece)[side], (leaves == isLow) == isAlong);
+                        bool const isLow =
+                            here.GetVertexChildVertex(ends[side]) < here.GetEdgeChildVertex(piece);
+                        children.emplace_back(here.GetEdgeChildEdges(piece)[side],
+                                              (leaves == isLow) == isAlong);
                     }
                 }
                 pieces = children;
             }
             double sum = 0.0;
-            for (auto const& [piece, isAlong] : pieces) sum += (isAlong ? 1.0 : -1.0) * values[static_cast<size_t>(piece)];
+            for (auto const& [piece, isAlong] : pieces)
+                sum += (isAlong ? 1.0 : -1.0) * values[static_cast<size_t>(piece)];
             EXPECT_NEAR(Apply(limits.Find(edge), form), sum, 5e-3);
         }
     }
@@ -144,16 +165,23 @@ TEST(EdgeLimits, SemiSharpFeaturesAreRefinedAway) {
     scene.cage.creaseVertexPairs = {scene.cage.faceVertices[0], scene.cage.faceVertices[1]};
     scene.cage.creaseSharpness = {1.5f};
     auto const refiner = test::MakeRefiner(scene, 3);
-    Index const edge = refiner->GetLevel(0).FindEdge(scene.cage.faceVertices[0], scene.cage.faceVertices[1]);
-    EXPECT_NE(test::RefusalOf([&] { far_ext::EdgeLimits(*refiner, 0).Find(edge); }).find("semi-sharp"), std::string::npos);
+    Index const edge =
+        refiner->GetLevel(0).FindEdge(scene.cage.faceVertices[0], scene.cage.faceVertices[1]);
+    EXPECT_NE(
+        test::RefusalOf([&] { far_ext::EdgeLimits(*refiner, 0).Find(edge); }).find("semi-sharp"),
+        std::string::npos);
     far_ext::EdgeLimits faded(*refiner, 2);
-    for (Index fine = 0; fine < refiner->GetLevel(2).GetNumEdges(); ++fine) EXPECT_NO_THROW(faded.Find(fine));
+    for (Index fine = 0; fine < refiner->GetLevel(2).GetNumEdges(); ++fine)
+        EXPECT_NO_THROW(faded.Find(fine));
 }
 
 TEST(EdgeLimits, LargeFansAreRefused) {
     auto const refiner = test::MakeRefiner(test::MakeFan(80, Sdc::SCHEME_LOOP, 0.1, 0.0), 1);
     Index const edge = refiner->GetLevel(0).GetVertexEdges(0)[0];
-    EXPECT_NE(test::RefusalOf([&] { far_ext::EdgeLimits(*refiner, 0).Find(edge); }).find("a fan of 80 faces"), std::string::npos);
+    EXPECT_NE(test::RefusalOf([&] {
+                  far_ext::EdgeLimits(*refiner, 0).Find(edge);
+              }).find("a fan of 80 faces"),
+              std::string::npos);
 }
 
 }  // namespace

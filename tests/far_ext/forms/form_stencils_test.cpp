@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/forms/form_stencils.h"
 
 #include <algorithm>
@@ -8,9 +9,9 @@
 #include <Eigen/SparseCore>
 #include <gtest/gtest.h>
 
+#include "far_ext/differential/subdivision_rows.h"
 #include "far_ext/forms/form_operators.h"
 #include "far_ext/rows/sparse_matrix.h"
-#include "far_ext/differential/subdivision_rows.h"
 #include "support/fit_meshes.h"
 #include "support/form_meshes.h"
 #include "support/refined.h"
@@ -26,7 +27,8 @@ using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 double Largest(Matrix const& matrix) {
     double largest = 0.0;
     for (Eigen::Index row = 0; row < matrix.outerSize(); ++row) {
-        for (Matrix::InnerIterator it(matrix, row); it; ++it) largest = std::max(largest, std::abs(it.value()));
+        for (Matrix::InnerIterator it(matrix, row); it; ++it)
+            largest = std::max(largest, std::abs(it.value()));
     }
     return largest;
 }
@@ -38,7 +40,9 @@ struct Step {
     Step(Far::TopologyRefiner const& refiner, int level) {
         auto const coarse = refiner.GetLevel(level - 1), fine = refiner.GetLevel(level);
         auto const forms = far_ext::BuildFormStencils(refiner, level);
-        s0 = AsMatrix(far_ext::BuildSubdivisionRows(refiner, level, far_ext::SubdivisionRule::Scheme), coarse.GetNumVertices());
+        s0 = AsMatrix(
+            far_ext::BuildSubdivisionRows(refiner, level, far_ext::SubdivisionRule::Scheme),
+            coarse.GetNumVertices());
         s1 = AsMatrix(forms.s1, coarse.GetNumEdges());
         s2 = AsMatrix(forms.s2, coarse.GetNumFaces());
         coarseD0 = AsMatrix(far_ext::BuildD0(coarse), coarse.GetNumVertices());
@@ -55,18 +59,22 @@ void CheckLaws(Step const& step, std::string const& name) {
     Eigen::VectorXd const columns = Eigen::RowVectorXd::Ones(step.s2.rows()) * step.s2;
     EXPECT_LT((columns.array() - 1.0).abs().maxCoeff(), 1e-14) << name;
     double smallest = 0.0;
-    for (Eigen::Index k = 0; k < step.s2.nonZeros(); ++k) smallest = std::min(smallest, step.s2.valuePtr()[k]);
+    for (Eigen::Index k = 0; k < step.s2.nonZeros(); ++k)
+        smallest = std::min(smallest, step.s2.valuePtr()[k]);
     EXPECT_GE(smallest, 0.0) << name;
 }
 
-// The laws of forms.md 2: S1 commutes with S0 and S2; nothing of a 2-form is lost; no weight is negative.
+// The laws of forms.md 2: S1 commutes with S0 and S2; nothing of a 2-form is lost; no weight is
+// negative.
 TEST(FormStencils, CommuteOnEveryKindOfMesh) {
     for (auto& [name, scene] : test::MakeFormMeshes()) {
-        for (auto boundary : {Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
+        for (auto boundary :
+             {Sdc::Options::VTX_BOUNDARY_EDGE_ONLY, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
             scene.cage.options.SetVtxBoundaryInterpolation(boundary);
             auto const refiner = test::MakeRefiner(scene, 3);
             ASSERT_NO_THROW(far_ext::CheckForms(*refiner)) << name;
-            for (int level = 1; level <= 3; ++level) CheckLaws(Step(*refiner, level), name + ", level " + std::to_string(level));
+            for (int level = 1; level <= 3; ++level)
+                CheckLaws(Step(*refiner, level), name + ", level " + std::to_string(level));
         }
     }
 }
@@ -76,7 +84,8 @@ TEST(FormStencils, CommuteWithChaikinsCreases) {
         if (scene.cage.creaseSharpness.empty()) continue;
         scene.cage.options.SetCreasingMethod(Sdc::Options::CREASE_CHAIKIN);
         auto const refiner = test::MakeRefiner(scene, 2);
-        for (int level = 1; level <= 2; ++level) CheckLaws(Step(*refiner, level), name + ", level " + std::to_string(level));
+        for (int level = 1; level <= 2; ++level)
+            CheckLaws(Step(*refiner, level), name + ", level " + std::to_string(level));
     }
 }
 
@@ -86,7 +95,8 @@ TEST_P(FormStencilsOf, CommuteOnRealMeshes) {
     std::string const path = GetParam();
     if (!test::HasAsset(path)) GTEST_SKIP() << path << " is not there";
     engine::Scene scene = test::LoadAsset(path);
-    bool const isTriangles = std::all_of(scene.cage.faceSizes.begin(), scene.cage.faceSizes.end(), [](int size) { return size == 3; });
+    bool const isTriangles = std::all_of(scene.cage.faceSizes.begin(), scene.cage.faceSizes.end(),
+                                         [](int size) { return size == 3; });
     if (isTriangles) scene.cage.scheme = Sdc::SCHEME_LOOP;
     int const levels = scene.cage.GetNumFaces() < 3000 ? 3 : 1;
     auto const refiner = test::MakeRefiner(scene, levels);
@@ -95,10 +105,14 @@ TEST_P(FormStencilsOf, CommuteOnRealMeshes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Assets, FormStencilsOf,
-                         testing::Values("control/spot_control_mesh.obj", "control/ict_head_skin.obj", "tri/dodecahedron_poly.obj", "tri/bob_small.ply",
-                                         "tri/eight.off", "tri/cowhead.obj", "tri/elephant-with-holes.off", "tri/mechpart_loop_control.obj"));
+                         testing::Values("control/spot_control_mesh.obj",
+                                         "control/ict_head_skin.obj", "tri/dodecahedron_poly.obj",
+                                         "tri/bob_small.ply", "tri/eight.off", "tri/cowhead.obj",
+                                         "tri/elephant-with-holes.off",
+                                         "tri/mechpart_loop_control.obj"));
 
-// S2 keeps a constant density where all sums are 1/4: away from Loop's valence 3 and single boundary triangles.
+// S2 keeps a constant density where all sums are 1/4: away from Loop's valence 3 and single
+// boundary triangles.
 TEST(FormStencils, KeepAConstantDensity) {
     for (auto& [name, scene] : test::MakeFormMeshes()) {
         if (!scene.cage.creaseSharpness.empty()) continue;
@@ -136,21 +150,28 @@ TEST(FormStencils, MatchTheReferenceRowsOfTheTetrahedron) {
         EXPECT_EQ(std::max(ends[0], ends[1]), edges[e][1]);
     }
     auto const forms = far_ext::BuildFormStencils(*refiner, 1);
-    Eigen::MatrixXd const s1 = 96.0 * Eigen::MatrixXd(AsMatrix(forms.s1, 6)), s2 = 96.0 * Eigen::MatrixXd(AsMatrix(forms.s2, 4));
+    Eigen::MatrixXd const s1 = 96.0 * Eigen::MatrixXd(AsMatrix(forms.s1, 6)),
+                          s2 = 96.0 * Eigen::MatrixXd(AsMatrix(forms.s2, 4));
     auto const children = coarse.GetFaceChildFaces(0);
     Eigen::Matrix<double, 4, 4> expected;
     expected << 4, 1, 1, 0, 4, 1, 0, 1, 4, 0, 1, 1, 60, 6, 6, 6;
-    for (int i = 0; i < 4; ++i) EXPECT_LT((s2.row(children[i]) - expected.row(i)).cwiseAbs().maxCoeff(), 1e-12) << i;
+    for (int i = 0; i < 4; ++i)
+        EXPECT_LT((s2.row(children[i]) - expected.row(i)).cwiseAbs().maxCoeff(), 1e-12) << i;
     Eigen::RowVectorXd even(6), odd(6);
     even << 22, 2, -8, -8, 2, 0;
     odd << -27, 0, 27, 0, -3, 3;
-    EXPECT_LT((s1.row(coarse.GetEdgeChildEdges(0)[coarse.GetEdgeVertices(0)[0] == 0 ? 0 : 1]) - even).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_LT(
+        (s1.row(coarse.GetEdgeChildEdges(0)[coarse.GetEdgeVertices(0)[0] == 0 ? 0 : 1]) - even)
+            .cwiseAbs()
+            .maxCoeff(),
+        1e-12);
     Index const edge46 = fine.FindEdge(4, 6);
     ASSERT_NE(edge46, Far::INDEX_INVALID);
     EXPECT_LT((s1.row(edge46) - odd).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-// On the regular lattice the forms dx and dy are halved (triangles and quads), wherever the stencil sees no boundary.
+// On the regular lattice the forms dx and dy are halved (triangles and quads), wherever the stencil
+// sees no boundary.
 TEST(FormStencils, HalveConstantForms) {
     for (auto scheme : {Sdc::SCHEME_LOOP, Sdc::SCHEME_CATMARK}) {
         engine::Scene const scene = test::MakeLattice(8, 8, scheme);
@@ -162,28 +183,37 @@ TEST(FormStencils, HalveConstantForms) {
             std::vector<double> form, result(static_cast<size_t>(fine.GetNumEdges()));
             for (Index e = 0; e < coarse.GetNumEdges(); ++e) {
                 auto const ends = coarse.GetEdgeVertices(e);
-                form.push_back(scene.positions[3 * static_cast<size_t>(std::max(ends[0], ends[1])) + axis] -
-                               scene.positions[3 * static_cast<size_t>(std::min(ends[0], ends[1])) + axis]);
+                form.push_back(
+                    scene.positions[3 * static_cast<size_t>(std::max(ends[0], ends[1])) + axis] -
+                    scene.positions[3 * static_cast<size_t>(std::min(ends[0], ends[1])) + axis]);
             }
             forms.s1.Apply(form.data(), result.data(), 1);
             for (Index e = 0; e < fine.GetNumEdges(); ++e) {
                 auto const ends = fine.GetEdgeVertices(e);
                 Index const low = std::min(ends[0], ends[1]), high = std::max(ends[0], ends[1]);
-                EXPECT_NEAR(result[e], points[3 * static_cast<size_t>(high) + axis] - points[3 * static_cast<size_t>(low) + axis], 1e-14);
+                EXPECT_NEAR(result[e],
+                            points[3 * static_cast<size_t>(high) + axis] -
+                                points[3 * static_cast<size_t>(low) + axis],
+                            1e-14);
             }
         }
     }
 }
 
-/// The row of the fine edge between the points at two places, keyed by the places of coarse edges' ends.
+/// The row of the fine edge between the points at two places, keyed by the places of coarse edges'
+/// ends.
 using Place = std::pair<double, double>;
-std::map<std::pair<Place, Place>, double> RowBetween(engine::Scene const& scene, Place from, Place to) {
+std::map<std::pair<Place, Place>, double> RowBetween(engine::Scene const& scene, Place from,
+                                                     Place to) {
     auto const refiner = test::MakeRefiner(scene, 1);
     auto const coarse = refiner->GetLevel(0), fine = refiner->GetLevel(1);
     auto const points = eval::RefineValues<3>(*refiner, 1, scene.positions);
     auto const find = [&](Place place) {
         for (Index v = 0; v < fine.GetNumVertices(); ++v) {
-            if (std::abs(points[3 * static_cast<size_t>(v)] - place.first) + std::abs(points[3 * static_cast<size_t>(v) + 1] - place.second) < 1e-9) return v;
+            if (std::abs(points[3 * static_cast<size_t>(v)] - place.first) +
+                    std::abs(points[3 * static_cast<size_t>(v) + 1] - place.second) <
+                1e-9)
+                return v;
         }
         return Index(-1);
     };
@@ -193,10 +223,15 @@ std::map<std::pair<Place, Place>, double> RowBetween(engine::Scene const& scene,
     for (int k = s1.offsets[edge]; k < s1.offsets[edge + 1]; ++k) {
         auto const ends = coarse.GetEdgeVertices(s1.indices[k]);
         Index const low = std::min(ends[0], ends[1]), high = std::max(ends[0], ends[1]);
-        auto const place = [&](Index v) { return Place(scene.positions[3 * static_cast<size_t>(v)], scene.positions[3 * static_cast<size_t>(v) + 1]); };
+        auto const place = [&](Index v) {
+            return Place(scene.positions[3 * static_cast<size_t>(v)],
+                         scene.positions[3 * static_cast<size_t>(v) + 1]);
+        };
         double const weight = (a < b ? 1.0 : -1.0) * s1.weights[k];
-        if (place(low) < place(high)) row[{place(low), place(high)}] = weight;
-        else row[{place(high), place(low)}] = -weight;
+        if (place(low) < place(high))
+            row[{place(low), place(high)}] = weight;
+        else
+            row[{place(high), place(low)}] = -weight;
     }
     return row;
 }
@@ -215,7 +250,9 @@ TEST(FormStencils, AreATensorProductAmongQuads) {
     auto const odd = RowBetween(scene, {4, 4.5}, {4.5, 4.5});
     ASSERT_EQ(odd.size(), 4u);
     for (int j : {0, 1}) {
-        for (int i : {0, 1}) EXPECT_NEAR(odd.at({{3.0 + i, 4.0 + j}, {4.0 + i, 4.0 + j}}), (i ? 3.0 : 1.0) / 16.0, 1e-15);
+        for (int i : {0, 1})
+            EXPECT_NEAR(odd.at({{3.0 + i, 4.0 + j}, {4.0 + i, 4.0 + j}}), (i ? 3.0 : 1.0) / 16.0,
+                        1e-15);
     }
 }
 
@@ -224,7 +261,8 @@ TEST(FormStencils, MatchTheRegularStencilsOfLoop) {
     auto const scene = test::MakeLattice(8, 8, Sdc::SCHEME_LOOP);
     Place const v{4, 4};
     Place const w[6] = {{5, 4}, {5, 5}, {4, 5}, {3, 4}, {3, 3}, {4, 3}};
-    auto const expect = [&](std::map<std::pair<Place, Place>, double> const& row, std::array<double, 6> spokes, std::array<double, 6> ring) {
+    auto const expect = [&](std::map<std::pair<Place, Place>, double> const& row,
+                            std::array<double, 6> spokes, std::array<double, 6> ring) {
         size_t count = 0;
         auto const check = [&](Place a, Place b, double weight) {
             if (weight == 0.0) return;
@@ -243,7 +281,8 @@ TEST(FormStencils, MatchTheRegularStencilsOfLoop) {
     expect(RowBetween(scene, {4.5, 4}, {4.5, 4.5}), {-3, 3, 3, 0, 0, -3}, {6, 1, 0, 0, 0, 1});
 }
 
-/// The same mesh with vertices and faces in other places and faces started elsewhere; or seen in a mirror.
+/// The same mesh with vertices and faces in other places and faces started elsewhere; or seen in a
+/// mirror.
 struct Renumbered {
     engine::Scene scene;
     std::vector<Index> vertices, faces;  // the new number of an old one
@@ -251,43 +290,54 @@ struct Renumbered {
 
 Renumbered Renumber(engine::Scene const& scene, bool isMirrored) {
     Renumbered result{scene, {}, {}};
-    Index const numVertices = scene.cage.numVertices, numFaces = static_cast<Index>(scene.cage.faceSizes.size());
-    for (Index v = 0; v < numVertices; ++v) result.vertices.push_back(isMirrored ? v : numVertices - 1 - v);
+    Index const numVertices = scene.cage.numVertices,
+                numFaces = static_cast<Index>(scene.cage.faceSizes.size());
+    for (Index v = 0; v < numVertices; ++v)
+        result.vertices.push_back(isMirrored ? v : numVertices - 1 - v);
     for (Index f = 0; f < numFaces; ++f) result.faces.push_back(isMirrored ? f : numFaces - 1 - f);
     std::vector<std::vector<Index>> lists(static_cast<size_t>(numFaces));
     Index at = 0;
     for (Index f = 0; f < numFaces; ++f) {
         int const size = scene.cage.faceSizes[f];
         auto& list = lists[static_cast<size_t>(result.faces[static_cast<size_t>(f)])];
-        for (int j = 0; j < size; ++j) list.push_back(result.vertices[static_cast<size_t>(scene.cage.faceVertices[at + (j + 1) % size])]);
+        for (int j = 0; j < size; ++j)
+            list.push_back(
+                result.vertices[static_cast<size_t>(scene.cage.faceVertices[at + (j + 1) % size])]);
         if (isMirrored) std::reverse(list.begin(), list.end());
         at += size;
     }
     std::vector<double> positions(scene.positions.size());
     for (Index v = 0; v < numVertices; ++v) {
-        std::copy_n(&scene.positions[3 * static_cast<size_t>(v)], 3, &positions[3 * static_cast<size_t>(result.vertices[static_cast<size_t>(v)])]);
+        std::copy_n(&scene.positions[3 * static_cast<size_t>(v)], 3,
+                    &positions[3 * static_cast<size_t>(result.vertices[static_cast<size_t>(v)])]);
     }
     result.scene = test::MakeScene(positions, lists, scene.cage.scheme);
     auto& cage = result.scene.cage;
     cage.creaseSharpness = scene.cage.creaseSharpness;
     cage.cornerSharpness = scene.cage.cornerSharpness;
-    for (Index v : scene.cage.creaseVertexPairs) cage.creaseVertexPairs.push_back(result.vertices[static_cast<size_t>(v)]);
-    for (Index v : scene.cage.cornerVertices) cage.cornerVertices.push_back(result.vertices[static_cast<size_t>(v)]);
+    for (Index v : scene.cage.creaseVertexPairs)
+        cage.creaseVertexPairs.push_back(result.vertices[static_cast<size_t>(v)]);
+    for (Index v : scene.cage.cornerVertices)
+        cage.cornerVertices.push_back(result.vertices[static_cast<size_t>(v)]);
     return result;
 }
 
 /// A 1-form and a 2-form that do not know numbers: from positions.
-std::pair<std::vector<double>, std::vector<double>> MakeForms(Far::TopologyLevel const& level, std::vector<double> const& points, double side) {
+std::pair<std::vector<double>, std::vector<double>> MakeForms(Far::TopologyLevel const& level,
+                                                              std::vector<double> const& points,
+                                                              double side) {
     std::vector<double> one, two;
     auto const at = [&](Index v, size_t c) { return points[3 * static_cast<size_t>(v) + c]; };
     for (Index e = 0; e < level.GetNumEdges(); ++e) {
         auto const ends = level.GetEdgeVertices(e);
         Index const a = std::min(ends[0], ends[1]), b = std::max(ends[0], ends[1]);
-        one.push_back((at(b, 0) - at(a, 0)) * (at(a, 1) + at(b, 1)) + std::sin(at(b, 2)) - std::sin(at(a, 2)));
+        one.push_back((at(b, 0) - at(a, 0)) * (at(a, 1) + at(b, 1)) + std::sin(at(b, 2)) -
+                      std::sin(at(a, 2)));
     }
     for (Index f = 0; f < level.GetNumFaces(); ++f) {
         double sum = 0.0;
-        for (Index v : level.GetFaceVertices(f)) sum += std::cos(at(v, 0) + 2 * at(v, 1) + 3 * at(v, 2));
+        for (Index v : level.GetFaceVertices(f))
+            sum += std::cos(at(v, 0) + 2 * at(v, 1) + 3 * at(v, 2));
         two.push_back(side * sum);
     }
     return {one, two};
@@ -299,7 +349,8 @@ TEST(FormStencils, DoNotDependOnNumbering) {
         for (bool isMirrored : {false, true}) {
             Renumbered const other = Renumber(scene, isMirrored);
             auto const a = test::MakeRefiner(scene, 1), b = test::MakeRefiner(other.scene, 1);
-            auto const refine = [&](Far::TopologyRefiner const& refiner, engine::Scene const& s, double side) {
+            auto const refine = [&](Far::TopologyRefiner const& refiner, engine::Scene const& s,
+                                    double side) {
                 auto const [one, two] = MakeForms(refiner.GetLevel(0), s.positions, side);
                 auto const forms = far_ext::BuildFormStencils(refiner, 1);
                 std::pair<std::vector<double>, std::vector<double>> fine;
@@ -309,29 +360,39 @@ TEST(FormStencils, DoNotDependOnNumbering) {
                 forms.s2.Apply(two.data(), fine.second.data(), 1);
                 return fine;
             };
-            auto const first = refine(*a, scene, 1.0), second = refine(*b, other.scene, isMirrored ? -1.0 : 1.0);
+            auto const first = refine(*a, scene, 1.0),
+                       second = refine(*b, other.scene, isMirrored ? -1.0 : 1.0);
             auto const fineA = a->GetLevel(1), fineB = b->GetLevel(1);
             // Vertices of the refined meshes, matched through their parents.
             std::vector<Index> vertex(static_cast<size_t>(fineA.GetNumVertices()), -1);
             auto const coarseA = a->GetLevel(0), coarseB = b->GetLevel(0);
             for (Index v = 0; v < coarseA.GetNumVertices(); ++v) {
                 Index const child = coarseA.GetVertexChildVertex(v);
-                if (child >= 0) vertex[static_cast<size_t>(child)] = coarseB.GetVertexChildVertex(other.vertices[static_cast<size_t>(v)]);
+                if (child >= 0)
+                    vertex[static_cast<size_t>(child)] =
+                        coarseB.GetVertexChildVertex(other.vertices[static_cast<size_t>(v)]);
             }
             for (Index e = 0; e < coarseA.GetNumEdges(); ++e) {
                 auto const ends = coarseA.GetEdgeVertices(e);
-                Index const same = coarseB.FindEdge(other.vertices[static_cast<size_t>(ends[0])], other.vertices[static_cast<size_t>(ends[1])]);
-                vertex[static_cast<size_t>(coarseA.GetEdgeChildVertex(e))] = coarseB.GetEdgeChildVertex(same);
+                Index const same = coarseB.FindEdge(other.vertices[static_cast<size_t>(ends[0])],
+                                                    other.vertices[static_cast<size_t>(ends[1])]);
+                vertex[static_cast<size_t>(coarseA.GetEdgeChildVertex(e))] =
+                    coarseB.GetEdgeChildVertex(same);
             }
-            for (Index f = 0; scene.cage.scheme == Sdc::SCHEME_CATMARK && f < coarseA.GetNumFaces(); ++f) {
-                vertex[static_cast<size_t>(coarseA.GetFaceChildVertex(f))] = coarseB.GetFaceChildVertex(other.faces[static_cast<size_t>(f)]);
+            for (Index f = 0; scene.cage.scheme == Sdc::SCHEME_CATMARK && f < coarseA.GetNumFaces();
+                 ++f) {
+                vertex[static_cast<size_t>(coarseA.GetFaceChildVertex(f))] =
+                    coarseB.GetFaceChildVertex(other.faces[static_cast<size_t>(f)]);
             }
             for (Index e = 0; e < fineA.GetNumEdges(); ++e) {
                 auto const ends = fineA.GetEdgeVertices(e);
                 Index const p = std::min(ends[0], ends[1]), q = std::max(ends[0], ends[1]);
-                Index const p2 = vertex[static_cast<size_t>(p)], q2 = vertex[static_cast<size_t>(q)];
+                Index const p2 = vertex[static_cast<size_t>(p)],
+                            q2 = vertex[static_cast<size_t>(q)];
                 double const sign = p2 < q2 ? 1.0 : -1.0;
-                EXPECT_NEAR(first.first[static_cast<size_t>(e)], sign * second.first[static_cast<size_t>(fineB.FindEdge(p2, q2))], 1e-13) << name;
+                EXPECT_NEAR(first.first[static_cast<size_t>(e)],
+                            sign * second.first[static_cast<size_t>(fineB.FindEdge(p2, q2))], 1e-13)
+                    << name;
             }
             // A child face by its parent and the corner it is at (Loop: or the middle).
             for (Index f = 0; f < coarseA.GetNumFaces(); ++f) {
@@ -342,9 +403,16 @@ TEST(FormStencils, DoNotDependOnNumbering) {
                 auto const sameChildren = coarseB.GetFaceChildFaces(same);
                 for (int j = 0; j < children.size(); ++j) {
                     int k = j;  // the middle keeps its place
-                    if (j < corners.size()) k = static_cast<int>(std::find(sameCorners.begin(), sameCorners.end(), other.vertices[static_cast<size_t>(corners[j])]) - sameCorners.begin());
-                    double const expected = (isMirrored ? -1.0 : 1.0) * first.second[static_cast<size_t>(children[j])];
-                    EXPECT_NEAR(second.second[static_cast<size_t>(sameChildren[k])], expected, 1e-13) << name << ", face " << f;
+                    if (j < corners.size())
+                        k = static_cast<int>(
+                            std::find(sameCorners.begin(), sameCorners.end(),
+                                      other.vertices[static_cast<size_t>(corners[j])]) -
+                            sameCorners.begin());
+                    double const expected =
+                        (isMirrored ? -1.0 : 1.0) * first.second[static_cast<size_t>(children[j])];
+                    EXPECT_NEAR(second.second[static_cast<size_t>(sameChildren[k])], expected,
+                                1e-13)
+                        << name << ", face " << f;
                 }
             }
         }
@@ -352,16 +420,19 @@ TEST(FormStencils, DoNotDependOnNumbering) {
 }
 
 TEST(FormStencils, ComposedTablesAreTheStepsInARow) {
-    for (auto const& scene : {test::MakeIrregularTriangles(6, 5, 1), test::MakeGridWithHole(5, 4)}) {
+    for (auto const& scene :
+         {test::MakeIrregularTriangles(6, 5, 1), test::MakeGridWithHole(5, 4)}) {
         auto const refiner = test::MakeRefiner(scene, 3);
         auto const all = far_ext::ComposeFormStencils(*refiner, 3);
         auto [one, two] = MakeForms(refiner->GetLevel(0), scene.positions, 1.0);
-        std::vector<double> direct(static_cast<size_t>(all.s1.GetNumRows())), directTwo(static_cast<size_t>(all.s2.GetNumRows()));
+        std::vector<double> direct(static_cast<size_t>(all.s1.GetNumRows())),
+            directTwo(static_cast<size_t>(all.s2.GetNumRows()));
         all.s1.Apply(one.data(), direct.data(), 1);
         all.s2.Apply(two.data(), directTwo.data(), 1);
         for (int level = 1; level <= 3; ++level) {
             auto const step = far_ext::BuildFormStencils(*refiner, level);
-            std::vector<double> nextOne(static_cast<size_t>(step.s1.GetNumRows())), nextTwo(static_cast<size_t>(step.s2.GetNumRows()));
+            std::vector<double> nextOne(static_cast<size_t>(step.s1.GetNumRows())),
+                nextTwo(static_cast<size_t>(step.s2.GetNumRows()));
             step.s1.Apply(one.data(), nextOne.data(), 1);
             step.s2.Apply(two.data(), nextTwo.data(), 1);
             one = nextOne;
@@ -381,8 +452,10 @@ TEST(FormOperators, RefuseWhatHasNoForms) {
     std::vector<double> points;
     for (Index i = 0; i < 5; ++i) {
         points.insert(points.end(), {static_cast<double>(i), 0, 0, static_cast<double>(i), 1, 0});
-        if (i < 4) band.push_back({2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1});
-        else band.push_back({8, 1, 0, 9});
+        if (i < 4)
+            band.push_back({2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1});
+        else
+            band.push_back({8, 1, 0, 9});
     }
     EXPECT_NE(Refusal(test::MakeScene(points, band)).find("non-orientable"), std::string::npos);
 
@@ -390,10 +463,12 @@ TEST(FormOperators, RefuseWhatHasNoForms) {
     std::reverse(reversed.cage.faceVertices.begin() + 8, reversed.cage.faceVertices.begin() + 12);
     EXPECT_NE(Refusal(reversed).find("inconsistent winding: face 2"), std::string::npos);
 
-    engine::Scene const fin = test::MakeScene({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}, Sdc::SCHEME_LOOP);
+    engine::Scene const fin = test::MakeScene({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1},
+                                              {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}, Sdc::SCHEME_LOOP);
     EXPECT_NE(Refusal(fin).find("has 3 faces"), std::string::npos);
 
-    engine::Scene const bow = test::MakeScene({0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1, 0}, {{0, 1, 2}, {0, 3, 4}}, Sdc::SCHEME_LOOP);
+    engine::Scene const bow = test::MakeScene({0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1, 0},
+                                              {{0, 1, 2}, {0, 3, 4}}, Sdc::SCHEME_LOOP);
     EXPECT_NE(Refusal(bow).find("vertex 0 form more than one fan"), std::string::npos);
 
     engine::Scene open = test::MakeLattice(2, 2, Sdc::SCHEME_CATMARK);

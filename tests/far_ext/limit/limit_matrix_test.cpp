@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/limit/limit_matrix.h"
 
 #include <cmath>
@@ -45,7 +46,8 @@ std::vector<Cage> MakeCages() {
     }
     for (int valence = 3; valence <= 12; ++valence) {
         for (auto scheme : {Sdc::SCHEME_CATMARK, Sdc::SCHEME_LOOP}) {
-            cages.push_back(MakeCage("fan " + std::to_string(valence), test::MakeFan(valence, scheme, 0.2, 0.1)));
+            cages.push_back(MakeCage("fan " + std::to_string(valence),
+                                     test::MakeFan(valence, scheme, 0.2, 0.1)));
         }
     }
     cages.push_back(MakeCage("torus", test::MakeTorus(7, 5)));
@@ -54,10 +56,12 @@ std::vector<Cage> MakeCages() {
 }
 
 MatrixXd GetPositions(engine::Scene const& scene) {
-    return Eigen::Map<Eigen::Matrix<double, -1, 3, Eigen::RowMajor> const>(scene.positions.data(), scene.cage.numVertices, 3);
+    return Eigen::Map<Eigen::Matrix<double, -1, 3, Eigen::RowMajor> const>(
+        scene.positions.data(), scene.cage.numVertices, 3);
 }
 
-/// Whether a vertex has what no limit mask of OpenSubdiv covers: semi-sharpness, or the end of a crease.
+/// Whether a vertex has what no limit mask of OpenSubdiv covers: semi-sharpness, or the end of a
+/// crease.
 bool IsBeyondMasks(Far::TopologyLevel const& level, Index vertex) {
     auto const edges = level.GetVertexEdges(vertex);
     bool isSemiSharp = level.IsVertexSemiSharp(vertex);
@@ -95,7 +99,8 @@ MatrixXd LimitByOpenSubdiv(engine::Scene const& scene, int levels) {
     MatrixXd limit(M.rows(), 3);
     for (Index vertex = 0; vertex < M.rows(); ++vertex) {
         Index child = vertex;
-        for (int level = 0; level < levels; ++level) child = refiner->GetLevel(level).GetVertexChildVertex(child);
+        for (int level = 0; level < levels; ++level)
+            child = refiner->GetLevel(level).GetVertexChildVertex(child);
         limit.row(vertex) = limits[static_cast<size_t>(child)].value;
     }
     return limit;
@@ -106,16 +111,21 @@ TEST(LimitMatrix, RowsSumToOneAndHaveNoColumnTwice) {
         SCOPED_TRACE(cage.name);
         auto const A = LimitMatrix::Build(*cage.refiner);
         for (int row = 0; row < A.GetNumStencils(); ++row) {
-            auto const begin = static_cast<size_t>(A.GetOffsets()[row]), end = begin + static_cast<size_t>(A.GetSizes()[row]);
-            ASSERT_NEAR(std::accumulate(A.GetWeights().begin() + begin, A.GetWeights().begin() + end, 0.0), 1.0, 1e-12);
-            std::vector<Index> columns(A.GetControlIndices().begin() + begin, A.GetControlIndices().begin() + end);
+            auto const begin = static_cast<size_t>(A.GetOffsets()[row]),
+                       end = begin + static_cast<size_t>(A.GetSizes()[row]);
+            ASSERT_NEAR(
+                std::accumulate(A.GetWeights().begin() + begin, A.GetWeights().begin() + end, 0.0),
+                1.0, 1e-12);
+            std::vector<Index> columns(A.GetControlIndices().begin() + begin,
+                                       A.GetControlIndices().begin() + end);
             std::sort(columns.begin(), columns.end());
             ASSERT_EQ(std::adjacent_find(columns.begin(), columns.end()), columns.end());
         }
     }
 }
 
-// Independent of any mask: the face's tree of rings, refined towards the corner as deep as doubles can tell.
+// Independent of any mask: the face's tree of rings, refined towards the corner as deep as doubles
+// can tell.
 TEST(LimitMatrix, MeetsTheDeeplyRefinedSurfaceOnEveryKindOfMesh) {
     for (Cage const& cage : MakeCages()) {
         SCOPED_TRACE(cage.name);
@@ -132,7 +142,8 @@ TEST(LimitMatrix, MeetsTheDeeplyRefinedSurfaceOnEveryKindOfMesh) {
             for (int corner = 0; corner < vertices.size(); ++corner) {
                 auto const place = eval::GetCornerPlace(surface, face, corner);
                 for (int c = 0; c < 3; ++c) {
-                    ASSERT_NEAR(eval::EvaluateChannel(tree, place.domain, place.s, place.t, c), limit(vertices[corner], c), 1e-12 * size)
+                    ASSERT_NEAR(eval::EvaluateChannel(tree, place.domain, place.s, place.t, c),
+                                limit(vertices[corner], c), 1e-12 * size)
                         << "vertex " << vertices[corner];
                 }
             }
@@ -142,28 +153,34 @@ TEST(LimitMatrix, MeetsTheDeeplyRefinedSurfaceOnEveryKindOfMesh) {
 
 TEST(LimitMatrix, MeetsOpenSubdivsLimitMasks) {
     for (Cage const& cage : MakeCages()) {
-        if (cage.scene.cage.scheme == Sdc::SCHEME_BILINEAR) continue;  // its Limit is the identity there, too
+        if (cage.scene.cage.scheme == Sdc::SCHEME_BILINEAR)
+            continue;  // its Limit is the identity there, too
         SCOPED_TRACE(cage.name);
         MatrixXd const M = GetPositions(cage.scene);
-        MatrixXd const limit = LimitMatrix::Build(*cage.refiner).AsMatrix() * M, theirs = LimitByOpenSubdiv(cage.scene, 1);
+        MatrixXd const limit = LimitMatrix::Build(*cage.refiner).AsMatrix() * M,
+                       theirs = LimitByOpenSubdiv(cage.scene, 1);
         double const size = (M.colwise().maxCoeff() - M.colwise().minCoeff()).norm();
         auto const level = cage.refiner->GetLevel(0);
         for (Index vertex = 0; vertex < M.rows(); ++vertex) {
             auto const faces = level.GetVertexFaces(vertex);
-            bool const hasLimit = std::any_of(faces.begin(), faces.end(), [&](Index f) { return !level.IsFaceHole(f); });
+            bool const hasLimit = std::any_of(faces.begin(), faces.end(),
+                                              [&](Index f) { return !level.IsFaceHole(f); });
             bool const isInterior2 = faces.size() == 2 && !level.IsVertexBoundary(vertex);
             if (!hasLimit || isInterior2 || IsBeyondMasks(level, vertex)) continue;
-            ASSERT_LE((limit.row(vertex) - theirs.row(vertex)).norm(), 1e-12 * size) << "vertex " << vertex;
+            ASSERT_LE((limit.row(vertex) - theirs.row(vertex)).norm(), 1e-12 * size)
+                << "vertex " << vertex;
         }
     }
 }
 
 /// Positions without any symmetry that would hide a wrong mask.
 void Perturb(engine::Scene& scene) {
-    for (size_t i = 0; i < scene.positions.size(); ++i) scene.positions[i] += 0.1 * std::sin(static_cast<double>(7 * i + 3));
+    for (size_t i = 0; i < scene.positions.size(); ++i)
+        scene.positions[i] += 0.1 * std::sin(static_cast<double>(7 * i + 3));
 }
 
-/// A cube whose last faces differ: `faces` in place of {4,5,6,7}; vertex 8, where they use it, lies at their middle.
+/// A cube whose last faces differ: `faces` in place of {4,5,6,7}; vertex 8, where they use it, lies
+/// at their middle.
 engine::Scene MakeCubeWith(std::vector<std::vector<Index>> faces) {
     engine::Scene const cube = test::MakeCube();
     for (Index face = 0; face < 6; ++face) {
@@ -171,34 +188,45 @@ engine::Scene MakeCubeWith(std::vector<std::vector<Index>> faces) {
         auto const begin = cube.cage.faceVertices.begin() + 4 * face;
         faces.emplace_back(begin, begin + 4);
     }
-    bool const hasMiddle = std::any_of(faces.begin(), faces.end(), [](auto const& f) { return std::count(f.begin(), f.end(), 8) > 0; });
+    bool const hasMiddle = std::any_of(faces.begin(), faces.end(), [](auto const& f) {
+        return std::count(f.begin(), f.end(), 8) > 0;
+    });
     auto positions = cube.positions;
     if (hasMiddle) positions.insert(positions.end(), {0, 0, 1});
     return test::MakeScene(std::move(positions), faces);
 }
 
-engine::Scene MakeCubeWithValence2() { return MakeCubeWith({{4, 5, 6, 8}, {8, 6, 7, 4}}); }
+engine::Scene MakeCubeWithValence2() {
+    return MakeCubeWith({{4, 5, 6, 8}, {8, 6, 7, 4}});
+}
 
-// OpenSubdiv's Limit leaves an interior vertex of valence 2 where its refinement put it, so that its answer
-// depends on the level, and takes the mask of a smooth vertex at darts; both come nearer to A with each level.
+// OpenSubdiv's Limit leaves an interior vertex of valence 2 where its refinement put it, so that
+// its answer depends on the level, and takes the mask of a smooth vertex at darts; both come nearer
+// to A with each level.
 TEST(LimitMatrix, OpenSubdivsMasksOnlyApproachItAtValence2AndDarts) {
     for (char const* name : {"valence 2", "catmark_dart_edgeonly", "catmark_dart_edgecorner"}) {
         SCOPED_TRACE(name);
-        engine::Scene scene = std::string(name) == "valence 2" ? MakeCubeWithValence2()
-                                                               : test::LoadData(std::string("opensubdiv_shapes/") + name + ".obj");
+        engine::Scene scene =
+            std::string(name) == "valence 2"
+                ? MakeCubeWithValence2()
+                : test::LoadData(std::string("opensubdiv_shapes/") + name + ".obj");
         Perturb(scene);
         for (float& sharpness : scene.cage.creaseSharpness) sharpness = 10.0f;
         Cage const cage = MakeCage(name, std::move(scene));
         auto const level = cage.refiner->GetLevel(0);
-        MatrixXd const limit = LimitMatrix::Build(*cage.refiner).AsMatrix() * GetPositions(cage.scene);
-        MatrixXd const first = LimitByOpenSubdiv(cage.scene, 1), fourth = LimitByOpenSubdiv(cage.scene, 4);
+        MatrixXd const limit =
+            LimitMatrix::Build(*cage.refiner).AsMatrix() * GetPositions(cage.scene);
+        MatrixXd const first = LimitByOpenSubdiv(cage.scene, 1),
+                       fourth = LimitByOpenSubdiv(cage.scene, 4);
         int numFound = 0;
         for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
-            bool const isInterior2 = level.GetVertexFaces(vertex).size() == 2 && !level.IsVertexBoundary(vertex);
+            bool const isInterior2 =
+                level.GetVertexFaces(vertex).size() == 2 && !level.IsVertexBoundary(vertex);
             bool const isDart = level.GetVertexRule(vertex) == Sdc::Crease::RULE_DART;
             if (!isInterior2 && !isDart) continue;
             ++numFound;
-            double const early = (first.row(vertex) - limit.row(vertex)).norm(), late = (fourth.row(vertex) - limit.row(vertex)).norm();
+            double const early = (first.row(vertex) - limit.row(vertex)).norm(),
+                         late = (fourth.row(vertex) - limit.row(vertex)).norm();
             EXPECT_GT(early, 1e-3);
             EXPECT_LT(late, 0.3 * early);
             EXPECT_GT(late, 1e-6);
@@ -207,7 +235,8 @@ TEST(LimitMatrix, OpenSubdivsMasksOnlyApproachItAtValence2AndDarts) {
     }
 }
 
-// For a vertex of valence n among quads: (n^2 v + 4 sum of edge ends + sum of face opposites) / (n (n+5)).
+// For a vertex of valence n among quads: (n^2 v + 4 sum of edge ends + sum of face opposites) / (n
+// (n+5)).
 TEST(LimitMatrix, CubeCornerHasTheClosedFormWeights) {
     auto const cube = MakeCage("cube", test::MakeCube());
     auto const limit = LimitMatrix::Build(*cube.refiner);
@@ -221,7 +250,8 @@ TEST(LimitMatrix, CubeCornerHasTheClosedFormWeights) {
 // Closed meshes without tags: B = D A is symmetric, whatever the faces.
 TEST(LimitMatrix, ScaledByDItIsSymmetricOnClosedMeshes) {
     std::vector<engine::Scene> scenes;
-    for (char const* name : {"golden_surface/icosa", "golden_surface/torustri", "opensubdiv_shapes/catmark_toroidal_tet"}) {
+    for (char const* name : {"golden_surface/icosa", "golden_surface/torustri",
+                             "opensubdiv_shapes/catmark_toroidal_tet"}) {
         scenes.push_back(test::LoadData(std::string(name) + ".obj"));
     }
     scenes.push_back(scenes[0]);
@@ -232,7 +262,8 @@ TEST(LimitMatrix, ScaledByDItIsSymmetricOnClosedMeshes) {
     scenes.push_back(MakeCubeWith({{4, 5, 8}, {5, 6, 8}, {6, 7, 4, 8}}));
     for (size_t i = 0; i < scenes.size(); ++i) {
         auto const limit = LimitMatrix::Build(*far_ext::CreateRefiner(scenes[i].cage));
-        VectorXd const D = Eigen::Map<VectorXd const>(limit.GetScales().data(), limit.GetNumStencils());
+        VectorXd const D =
+            Eigen::Map<VectorXd const>(limit.GetScales().data(), limit.GetNumStencils());
         MatrixXd const B = D.asDiagonal() * MatrixXd(limit.AsMatrix());
         EXPECT_LT((B - B.transpose()).cwiseAbs().maxCoeff(), 1e-11) << "mesh " << i;
     }
@@ -244,20 +275,25 @@ TEST(LimitMatrix, GoldenLimits) {
         Sdc::SchemeType scheme;
         LimitOptions options;
     };
-    Variant const variants[] = {{"cc", Sdc::SCHEME_CATMARK, {}},
-                                {"loop", Sdc::SCHEME_LOOP, {}},
-                                {"cc_a50p", Sdc::SCHEME_CATMARK, {0.5, LimitOptions::AlphaRule::FirstStep}},
-                                {"cc_a50s", Sdc::SCHEME_CATMARK, {0.5, LimitOptions::AlphaRule::Stationary}}};
+    Variant const variants[] = {
+        {"cc", Sdc::SCHEME_CATMARK, {}},
+        {"loop", Sdc::SCHEME_LOOP, {}},
+        {"cc_a50p", Sdc::SCHEME_CATMARK, {0.5, LimitOptions::AlphaRule::FirstStep}},
+        {"cc_a50s", Sdc::SCHEME_CATMARK, {0.5, LimitOptions::AlphaRule::Stationary}}};
     int numCompared = 0;
     for (std::string const name : {"cube", "icosa", "torustri", "gridholetri"}) {
         for (Variant const& variant : variants) {
-            std::string const golden = "golden_surface/" + name + "_pi_" + variant.suffix + "_limit.obj";
+            std::string const golden =
+                "golden_surface/" + name + "_pi_" + variant.suffix + "_limit.obj";
             if (!std::filesystem::exists(test::DataPath(golden))) continue;
             engine::Scene scene = test::LoadData("golden_surface/" + name + ".obj");
             scene.cage.scheme = variant.scheme;
             Cage const cage = MakeCage(name, std::move(scene));
-            MatrixXd const limit = LimitMatrix::Build(*cage.refiner, 0, variant.options).AsMatrix() * GetPositions(cage.scene);
-            EXPECT_LT((limit - test::LoadGoldenPoints(golden)).cwiseAbs().maxCoeff(), 1e-12) << golden;
+            MatrixXd const limit =
+                LimitMatrix::Build(*cage.refiner, 0, variant.options).AsMatrix() *
+                GetPositions(cage.scene);
+            EXPECT_LT((limit - test::LoadGoldenPoints(golden)).cwiseAbs().maxCoeff(), 1e-12)
+                << golden;
             ++numCompared;
         }
     }
@@ -291,18 +327,22 @@ TEST(LimitMatrix, MeetsOpenSubdivsLimitStencils) {
     for (Index i = 0; i < table->GetNumStencils(); ++i) {
         auto const stencil = table->GetStencil(i);
         VectorXd row = VectorXd::Zero(dense.cols());
-        for (int k = 0; k < stencil.GetSize(); ++k) row[stencil.GetVertexIndices()[k]] += stencil.GetWeights()[k];
-        ASSERT_LT((row.transpose() - dense.row(vertices[static_cast<size_t>(i)])).cwiseAbs().maxCoeff(), 1e-9);
+        for (int k = 0; k < stencil.GetSize(); ++k)
+            row[stencil.GetVertexIndices()[k]] += stencil.GetWeights()[k];
+        ASSERT_LT(
+            (row.transpose() - dense.row(vertices[static_cast<size_t>(i)])).cwiseAbs().maxCoeff(),
+            1e-9);
     }
 }
 
-// EDGE_ONLY: the one face's corner moves along the boundary curve; OpenSubdiv's stencils keep it sharp at the
-// isolation level, A and its Limit do not.
+// EDGE_ONLY: the one face's corner moves along the boundary curve; OpenSubdiv's stencils keep it
+// sharp at the isolation level, A and its Limit do not.
 TEST(LimitMatrix, AnEdgeOnlyCornerFollowsTheBoundaryCurve) {
     engine::Scene scene = test::MakeScene({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, {{0, 1, 2, 3}});
     scene.cage.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     Cage const cage = MakeCage("quad", std::move(scene));
-    MatrixXd const M = GetPositions(cage.scene), limit = LimitMatrix::Build(*cage.refiner).AsMatrix() * M;
+    MatrixXd const M = GetPositions(cage.scene),
+                   limit = LimitMatrix::Build(*cage.refiner).AsMatrix() * M;
     EXPECT_LT((limit.row(0) - Eigen::RowVector3d(1, 1, 0) / 6.0).norm(), 1e-15);
 
     constexpr int kIsolation = 6;
@@ -316,8 +356,10 @@ TEST(LimitMatrix, AnEdgeOnlyCornerFollowsTheBoundaryCurve) {
         Far::LimitStencilTableFactoryReal<double>::Create(*cage.refiner, {corner}));
     Eigen::RowVector3d theirs = Eigen::RowVector3d::Zero();
     auto const stencil = table->GetStencil(0);
-    for (int k = 0; k < stencil.GetSize(); ++k) theirs += stencil.GetWeights()[k] * M.row(stencil.GetVertexIndices()[k]);
-    // A third of what is left of the corner, which each level quarters: in both coordinates half of that.
+    for (int k = 0; k < stencil.GetSize(); ++k)
+        theirs += stencil.GetWeights()[k] * M.row(stencil.GetVertexIndices()[k]);
+    // A third of what is left of the corner, which each level quarters: in both coordinates half of
+    // that.
     double const miss = (limit.row(0) - theirs).norm();
     EXPECT_GT(miss, 0.1 * std::pow(4.0, -kIsolation));
     EXPECT_LT(miss, 0.5 * std::pow(4.0, -kIsolation));
@@ -326,14 +368,17 @@ TEST(LimitMatrix, AnEdgeOnlyCornerFollowsTheBoundaryCurve) {
 TEST(LimitMatrix, RunsInOpenSubdivsEvaluatorAndAsAMatrix) {
     Cage const cage = MakeCage("torus", test::MakeTorus(20, 12));
     auto const A = LimitMatrix::Build(*cage.refiner);
-    std::vector<float> const src(cage.scene.positions.begin(), cage.scene.positions.end()), weights = A.MakeFloatWeights();
+    std::vector<float> const src(cage.scene.positions.begin(), cage.scene.positions.end()),
+        weights = A.MakeFloatWeights();
     std::vector<float> dst(src.size());
     OpenSubdiv::Osd::BufferDescriptor const rows(0, 3, 3);
-    OpenSubdiv::Osd::CpuEvaluator::EvalStencils(src.data(), rows, dst.data(), rows, A.GetSizes().data(), A.GetOffsets().data(),
-                                                A.GetControlIndices().data(), weights.data(), 0, A.GetNumStencils());
+    OpenSubdiv::Osd::CpuEvaluator::EvalStencils(
+        src.data(), rows, dst.data(), rows, A.GetSizes().data(), A.GetOffsets().data(),
+        A.GetControlIndices().data(), weights.data(), 0, A.GetNumStencils());
     MatrixXd const limit = A.AsMatrix() * GetPositions(cage.scene);
     for (Index i = 0; i < limit.rows(); ++i) {
-        for (int c = 0; c < 3; ++c) ASSERT_NEAR(dst[static_cast<size_t>(3 * i + c)], limit(i, c), 1e-6);
+        for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(dst[static_cast<size_t>(3 * i + c)], limit(i, c), 1e-6);
     }
 }
 
@@ -343,7 +388,8 @@ TEST(LimitMatrix, RefinedLevelsHaveTheirOwn) {
     Far::TopologyRefiner::UniformOptions uniform(2);
     uniform.fullTopologyInLastLevel = true;
     refiner->RefineUniform(uniform);
-    // The limit of the refined points is the limit of the cage, at the vertices the cage has already.
+    // The limit of the refined points is the limit of the cage, at the vertices the cage has
+    // already.
     Far::PrimvarRefinerReal<double> const primvars(*refiner);
     MatrixXd const M = GetPositions(scene);
     std::vector<Row3> rows(static_cast<size_t>(M.rows()));
@@ -355,15 +401,18 @@ TEST(LimitMatrix, RefinedLevelsHaveTheirOwn) {
     }
     MatrixXd refined(rows.size(), 3);
     for (size_t i = 0; i < rows.size(); ++i) refined.row(static_cast<Index>(i)) = rows[i].value;
-    MatrixXd const coarse = LimitMatrix::Build(*refiner).AsMatrix() * M, fine = LimitMatrix::Build(*refiner, 2).AsMatrix() * refined;
+    MatrixXd const coarse = LimitMatrix::Build(*refiner).AsMatrix() * M,
+                   fine = LimitMatrix::Build(*refiner, 2).AsMatrix() * refined;
     for (Index vertex = 0; vertex < M.rows(); ++vertex) {
-        Index const child = refiner->GetLevel(1).GetVertexChildVertex(refiner->GetLevel(0).GetVertexChildVertex(vertex));
+        Index const child = refiner->GetLevel(1).GetVertexChildVertex(
+            refiner->GetLevel(0).GetVertexChildVertex(vertex));
         EXPECT_LT((coarse.row(vertex) - fine.row(child)).norm(), 1e-13);
     }
 }
 
 TEST(LimitMatrix, AlphaOutOfRangeOrOfAnotherSchemeIsRefused) {
-    Cage const cube = MakeCage("cube", test::MakeCube()), torus = MakeCage("torus", test::MakeTriangleTorus(5, 5));
+    Cage const cube = MakeCage("cube", test::MakeCube()),
+               torus = MakeCage("torus", test::MakeTriangleTorus(5, 5));
     EXPECT_NE(test::RefusalOf([&] { LimitMatrix::Build(*cube.refiner, 0, {.alpha = -0.1}); }), "");
     EXPECT_NE(test::RefusalOf([&] { LimitMatrix::Build(*cube.refiner, 0, {.alpha = NAN}); }), "");
     EXPECT_NE(test::RefusalOf([&] { LimitMatrix::Build(*torus.refiner, 0, {.alpha = 0.5}); }), "");

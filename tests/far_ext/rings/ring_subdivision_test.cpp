@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/rings/ring_subdivision.h"
 
 #include <cmath>
@@ -46,14 +47,16 @@ void ExpectRowsSumToOne(far_ext::SparseRows const& rows) {
 
 // Subdivision and extrapolation are affine: moving all points moves the result.
 TEST(RingSubdivision, RowsSumToOne) {
-    ForEachRing([](engine::Scene const& scene, auto const&, Index, FaceRing const& ring, auto const&) {
-        auto const step = RingSubdivision::Build(ring, scene.cage.scheme, scene.cage.options);
-        ExpectRowsSumToOne(step.patch);
-        for (auto const& child : step.children) ExpectRowsSumToOne(child.weights);
-    });
+    ForEachRing(
+        [](engine::Scene const& scene, auto const&, Index, FaceRing const& ring, auto const&) {
+            auto const step = RingSubdivision::Build(ring, scene.cage.scheme, scene.cage.options);
+            ExpectRowsSumToOne(step.patch);
+            for (auto const& child : step.children) ExpectRowsSumToOne(child.weights);
+        });
 }
 
-// A child's own corners must be the points that OpenSubdiv's refinement of the whole mesh gives them.
+// A child's own corners must be the points that OpenSubdiv's refinement of the whole mesh gives
+// them.
 TEST(RingSubdivision, ChildrenAreTheRefinedFacesOfTheWholeMesh) {
     struct Point {
         double x = 0.0;
@@ -81,16 +84,18 @@ TEST(RingSubdivision, ChildrenAreTheRefinedFacesOfTheWholeMesh) {
                 int const row = step.children[c].ring.faceVertices[corner];
                 double x = 0.0;
                 for (int k = weights.offsets[row]; k < weights.offsets[row + 1]; ++k) {
-                    x += weights.weights[k] * scene.positions[3 * static_cast<size_t>(points[weights.indices[k]])];
+                    x += weights.weights[k] *
+                         scene.positions[3 * static_cast<size_t>(points[weights.indices[k]])];
                 }
-                ASSERT_NEAR(x, to[vertices[corner]].x, 1e-6 * (1.0 + std::abs(x)));  // Loop rounds its weights to float
+                ASSERT_NEAR(x, to[vertices[corner]].x,
+                            1e-6 * (1.0 + std::abs(x)));  // Loop rounds its weights to float
             }
         }
     });
 }
 
-// At an extraordinary vertex the corner child has the ring of its parent from the second step on: what
-// makes a few matrices serve every depth.
+// At an extraordinary vertex the corner child has the ring of its parent from the second step on:
+// what makes a few matrices serve every depth.
 TEST(RingSubdivision, ExtraordinaryCornersBecomeStationary) {
     for (int valence : {3, 5, 8, 12}) {
         engine::Scene const scene = test::MakeFan(valence, Sdc::SCHEME_CATMARK, 0.1, 0.1);
@@ -104,7 +109,8 @@ TEST(RingSubdivision, ExtraordinaryCornersBecomeStationary) {
         auto const second = RingSubdivision::Build(child, scene.cage.scheme, scene.cage.options);
         EXPECT_EQ(second.children[0].ring, child) << "valence " << valence;
         for (int regular : {1, 2, 3}) {
-            auto const piece = RingSubdivision::Build(second.children[regular].ring, scene.cage.scheme, scene.cage.options);
+            auto const piece = RingSubdivision::Build(second.children[regular].ring,
+                                                      scene.cage.scheme, scene.cage.options);
             EXPECT_TRUE(piece.IsRegular());
         }
     }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/stencils/refined_stencils.h"
 
 #include <cmath>
@@ -26,18 +27,22 @@ std::unique_ptr<Far::TopologyRefiner> Refine(ControlMesh const& cage, int level)
 }
 
 /// Far's own table of the last level, in double.
-std::unique_ptr<Far::StencilTableReal<double> const> MakeFarTable(Far::TopologyRefiner const& refiner, Mode mode) {
+std::unique_ptr<Far::StencilTableReal<double> const> MakeFarTable(
+    Far::TopologyRefiner const& refiner, Mode mode) {
     FarFactory::Options options;
     options.generateIntermediateLevels = false;
     options.generateOffsets = true;
     options.interpolationMode = mode == Mode::Vertex    ? FarFactory::INTERPOLATE_VERTEX
                                 : mode == Mode::Varying ? FarFactory::INTERPOLATE_VARYING
                                                         : FarFactory::INTERPOLATE_FACE_VARYING;
-    return std::unique_ptr<Far::StencilTableReal<double> const>(FarFactory::Create(refiner, options));
+    return std::unique_ptr<Far::StencilTableReal<double> const>(
+        FarFactory::Create(refiner, options));
 }
 
-/// Every weight is Far's in double, rounded to float; where limn takes Far's table in float, to its bound.
-void ExpectFarsWeights(Far::TopologyRefiner const& refiner, Mode mode, std::string const& name, double bound = 1.2e-7) {
+/// Every weight is Far's in double, rounded to float; where limn takes Far's table in float, to its
+/// bound.
+void ExpectFarsWeights(Far::TopologyRefiner const& refiner, Mode mode, std::string const& name,
+                       double bound = 1.2e-7) {
     auto const theirs = MakeFarTable(refiner, mode);
     StencilRows const ours = BuildRefinedStencils(refiner, {mode, 0}).Expand();
     ASSERT_EQ(ours.GetNumStencils(), theirs->GetNumStencils()) << name;
@@ -51,7 +56,8 @@ void ExpectFarsWeights(Far::TopologyRefiner const& refiner, Mode mode, std::stri
             row[ours.GetControlIndices()[k]] += ours.GetWeights()[k];
         }
         auto const stencil = theirs->GetStencil(i);
-        for (int k = 0; k < stencil.GetSize(); ++k) row[stencil.GetVertexIndices()[k]] -= stencil.GetWeights()[k];
+        for (int k = 0; k < stencil.GetSize(); ++k)
+            row[stencil.GetVertexIndices()[k]] -= stencil.GetWeights()[k];
         for (auto const& [control, difference] : row) {
             if (std::abs(difference) > worst) {
                 worst = std::abs(difference);
@@ -66,8 +72,10 @@ TEST(RefinedStencils, VertexWeightsAreFarsOnEveryCage) {
     for (std::string const& file : test::ListData("opensubdiv_shapes")) {
         auto const scene = test::LoadData("opensubdiv_shapes/" + file);
         for (int level = 1; level <= 4; ++level) {
-            if (scene.cage.GetNumFaces() << (2 * level) > 300000) break;  // the rest: simd_evaluator_test
-            ExpectFarsWeights(*Refine(scene.cage, level), Mode::Vertex, fmt::format("{} level {}", file, level));
+            if (scene.cage.GetNumFaces() << (2 * level) > 300000)
+                break;  // the rest: simd_evaluator_test
+            ExpectFarsWeights(*Refine(scene.cage, level), Mode::Vertex,
+                              fmt::format("{} level {}", file, level));
         }
     }
 }
@@ -77,7 +85,8 @@ TEST(RefinedStencils, VaryingWeightsAreFarsOnEveryCage) {
         auto const scene = test::LoadData("opensubdiv_shapes/" + file);
         for (int level = 1; level <= 3; ++level) {
             if (scene.cage.GetNumFaces() << (2 * level) > 20000) break;
-            ExpectFarsWeights(*Refine(scene.cage, level), Mode::Varying, fmt::format("{} level {}", file, level));
+            ExpectFarsWeights(*Refine(scene.cage, level), Mode::Varying,
+                              fmt::format("{} level {}", file, level));
         }
     }
 }
@@ -87,7 +96,8 @@ TEST(RefinedStencils, FaceVaryingWeightsAreFarsOnEveryCageAndRule) {
         auto scene = test::LoadData("opensubdiv_shapes/" + file);
         if (scene.cage.fvarChannels.empty()) continue;
         for (int rule = 0; rule <= Sdc::Options::FVAR_LINEAR_ALL; ++rule) {
-            scene.cage.options.SetFVarLinearInterpolation(static_cast<Sdc::Options::FVarLinearInterpolation>(rule));
+            scene.cage.options.SetFVarLinearInterpolation(
+                static_cast<Sdc::Options::FVarLinearInterpolation>(rule));
             for (int level = 1; level <= 3; ++level) {
                 if (scene.cage.GetNumFaces() << (2 * level) > 20000) break;
                 ExpectFarsWeights(*Refine(scene.cage, level), Mode::FaceVarying,
@@ -113,14 +123,16 @@ TEST(RefinedStencils, FaceVaryingWeightsAreFarsWhereACutEnds) {
             for (int vertex : faces.back()) {
                 int const x = vertex % (kSize + 1), y = vertex / (kSize + 1);
                 bool const isOtherSide = y == kCut && x < kCut && j >= kCut;
-                channel.valueIndices.push_back(isOtherSide ? (kSize + 1) * (kSize + 1) + x : vertex);
+                channel.valueIndices.push_back(isOtherSide ? (kSize + 1) * (kSize + 1) + x
+                                                           : vertex);
             }
         }
     }
     auto scene = test::MakeScene(positions, faces);
     scene.cage.fvarChannels.push_back(channel);
     for (int rule = 0; rule <= Sdc::Options::FVAR_LINEAR_ALL; ++rule) {
-        scene.cage.options.SetFVarLinearInterpolation(static_cast<Sdc::Options::FVarLinearInterpolation>(rule));
+        scene.cage.options.SetFVarLinearInterpolation(
+            static_cast<Sdc::Options::FVarLinearInterpolation>(rule));
         ExpectFarsWeights(*Refine(scene.cage, 3), Mode::FaceVarying, fmt::format("rule {}", rule));
     }
 }
@@ -130,7 +142,8 @@ TEST(RefinedStencils, BoundaryRulesAreFars) {
     for (auto rule : {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
                       Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
         scene.cage.options.SetVtxBoundaryInterpolation(rule);
-        ExpectFarsWeights(*Refine(scene.cage, 3), Mode::Vertex, fmt::format("boundary rule {}", static_cast<int>(rule)));
+        ExpectFarsWeights(*Refine(scene.cage, 3), Mode::Vertex,
+                          fmt::format("boundary rule {}", static_cast<int>(rule)));
     }
 }
 
@@ -141,7 +154,8 @@ TEST(RefinedStencils, WeightsAreFarsWhereNoTwoFacesAreAlike) {
         scene.cage.creaseVertexPairs.insert(scene.cage.creaseVertexPairs.end(), {v, v + 1});
         scene.cage.creaseSharpness.push_back(0.001f * static_cast<float>(v + 1));
     }
-    ExpectFarsWeights(*Refine(scene.cage, 2), Mode::Vertex, "a crease of its own at every face", 1e-6);
+    ExpectFarsWeights(*Refine(scene.cage, 2), Mode::Vertex, "a crease of its own at every face",
+                      1e-6);
 }
 
 TEST(RefinedStencils, UnusedVerticesStay) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "far_ext/topology/control_mesh.h"
 
 #include <cmath>
@@ -24,9 +25,13 @@ ErrorCode CodeOf(Action action) {
     return ErrorCode::Io;
 }
 
-ControlMesh Cube() { return test::MakeCube().cage; }
+ControlMesh Cube() {
+    return test::MakeCube().cage;
+}
 
-TEST(ControlMesh, ACubeIsValid) { EXPECT_NO_THROW(far_ext::Validate(Cube())); }
+TEST(ControlMesh, ACubeIsValid) {
+    EXPECT_NO_THROW(far_ext::Validate(Cube()));
+}
 
 TEST(ControlMesh, AnIndexBeyondTheVerticesIsRefused) {
     ControlMesh mesh = Cube();
@@ -41,7 +46,8 @@ TEST(ControlMesh, LoopRefusesAQuadAndNamesIt) {
         far_ext::Validate(mesh);
         FAIL() << "no error";
     } catch (Error const& error) {
-        EXPECT_NE(std::string(error.what()).find("face 0 has 4 corners"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("face 0 has 4 corners"), std::string::npos)
+            << error.what();
     }
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/audit/gauss_bonnet.h"
 
 #include <array>
@@ -30,14 +31,15 @@ engine::GaussBonnetAudit AuditOf(Scene const& scene, int size) {
     engine::BakeOptions options;
     options.width = options.height = size;
     auto const report = MakeReport();
-    auto const audits = engine::AuditGaussBonnet(engine::AuditInput(scene, *refiner, options, report));
+    auto const audits =
+        engine::AuditGaussBonnet(engine::AuditInput(scene, *refiner, options, report));
     EXPECT_EQ(audits.size(), 1u);
     return audits.at(0);
 }
 
-/// Each face gets a cell of a grid for its own, and bilinear texture coordinates: quads fill theirs, so that charts
-/// end where texels do and only extraordinary vertices disturb the sum. In cells of 200 texels triangles' legs
-/// do so, too, and the third side passes between texel centres.
+/// Each face gets a cell of a grid for its own, and bilinear texture coordinates: quads fill
+/// theirs, so that charts end where texels do and only extraordinary vertices disturb the sum. In
+/// cells of 200 texels triangles' legs do so, too, and the third side passes between texel centres.
 void GiveEachFaceACell(Scene& scene, int cellsPerSide) {
     std::vector<Index> indices;
     for (Index face = 0; face < scene.cage.GetNumFaces(); ++face) {
@@ -51,11 +53,12 @@ void GiveEachFaceACell(Scene& scene, int cellsPerSide) {
         }
     }
     scene.cage.options.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_ALL);
-    scene.cage.fvarChannels.push_back({static_cast<Index>(scene.uvs.size() / 2), std::move(indices)});
+    scene.cage.fvarChannels.push_back(
+        {static_cast<Index>(scene.uvs.size() / 2), std::move(indices)});
 }
 
-/// A closed, egg-shaped mesh of 6n quads with two poles of valence n, 2n vertices of valence 3 next to them, and
-/// otherwise regular ones. In texture space a grid of 7 x 7 cells (n <= 8) or 9 x 9.
+/// A closed, egg-shaped mesh of 6n quads with two poles of valence n, 2n vertices of valence 3 next
+/// to them, and otherwise regular ones. In texture space a grid of 7 x 7 cells (n <= 8) or 9 x 9.
 Scene MakeLantern(int n) {
     double const pi = std::acos(-1.0);
     std::vector<double> positions{0, 0, 1.3, 0, 0, -1};
@@ -63,7 +66,8 @@ Scene MakeLantern(int n) {
         double const height[3] = {0.7, 0.1, -0.6}, radius[3] = {0.7, 1.0, 0.8};
         for (int k = 0; k < 2 * n; ++k) {
             double const angle = pi * k / n;
-            positions.insert(positions.end(), {radius[ring] * std::cos(angle), radius[ring] * std::sin(angle), height[ring]});
+            positions.insert(positions.end(), {radius[ring] * std::cos(angle),
+                                               radius[ring] * std::sin(angle), height[ring]});
         }
     }
     auto const at = [&](int ring, int k) { return 2 + 2 * n * ring + k % (2 * n); };
@@ -73,7 +77,8 @@ Scene MakeLantern(int n) {
         faces.push_back({1, at(2, k + 2), at(2, k + 1), at(2, k)});
     }
     for (int ring = 0; ring < 2; ++ring) {
-        for (int k = 0; k < 2 * n; ++k) faces.push_back({at(ring + 1, k), at(ring + 1, k + 1), at(ring, k + 1), at(ring, k)});
+        for (int k = 0; k < 2 * n; ++k)
+            faces.push_back({at(ring + 1, k), at(ring + 1, k + 1), at(ring, k + 1), at(ring, k)});
     }
     Scene scene = test::MakeScene(std::move(positions), faces);
     GiveEachFaceACell(scene, n <= 8 ? 7 : 9);
@@ -90,7 +95,8 @@ TEST_P(Lantern, WithDiscsTheSumIsNearer) {
         auto const audit = AuditOf(scene, cells * texels);
         ASSERT_TRUE(audit.wasAudited) << audit.reason;
         EXPECT_NEAR(audit.expected, 4 * std::acos(-1.0), 1e-12);
-        double const apart = std::abs(audit.integral - audit.expected), alone = std::abs(audit.texelSum - audit.expected);
+        double const apart = std::abs(audit.integral - audit.expected),
+                     alone = std::abs(audit.texelSum - audit.expected);
         EXPECT_LT(apart, 0.5 * alone) << texels << " texels per face";
         EXPECT_LT(audit.relativeError, 1e-3) << texels << " texels per face";
     }
@@ -101,15 +107,19 @@ TEST(GaussBonnet, HoldsWhereAllExtraordinaryVerticesHaveValenceThree) {
     EXPECT_LT(AuditOf(MakeLantern(3), 7 * 16).relativeError, 5e-4);
 }
 
-// Texels alone gain less than the square of their number, which is what the sum gains where curvature is smooth.
+// Texels alone gain less than the square of their number, which is what the sum gains where
+// curvature is smooth.
 TEST(GaussBonnet, WithDiscsTheSumConvergesQuadratically) {
     Scene const scene = MakeLantern(8);
     auto const coarse = AuditOf(scene, 7 * 16), fine = AuditOf(scene, 7 * 64);
-    EXPECT_LT(std::abs(fine.integral - fine.expected), std::abs(coarse.integral - coarse.expected) / 14);
-    EXPECT_GT(std::abs(fine.texelSum - fine.expected), std::abs(coarse.texelSum - coarse.expected) / 14);
+    EXPECT_LT(std::abs(fine.integral - fine.expected),
+              std::abs(coarse.integral - coarse.expected) / 14);
+    EXPECT_GT(std::abs(fine.texelSum - fine.expected),
+              std::abs(coarse.texelSum - coarse.expected) / 14);
 }
 
-// spot has triangles and pentagons among its quads, whose centres are extraordinary, and seams through them.
+// spot has triangles and pentagons among its quads, whose centres are extraordinary, and seams
+// through them.
 TEST(GaussBonnet, SpotGainsByDiscs) {
     Scene const spot = test::LoadData("../../scenes/spot/spot.obj");
     double apart = 0.0, alone = 0.0;
@@ -129,17 +139,24 @@ TEST(GaussBonnet, HoldsOnLoopSurfaces) {
     std::map<std::array<int, 3>, Index> vertices;
     constexpr int kCuts = 4;
     auto const vertex = [&](std::array<int, 3> const& place) {
-        auto const [found, isNew] = vertices.try_emplace(place, static_cast<Index>(positions.size() / 3));
+        auto const [found, isNew] =
+            vertices.try_emplace(place, static_cast<Index>(positions.size() / 3));
         double const length = std::hypot(place[0], place[1], 1.2 * place[2]);
-        if (isNew) positions.insert(positions.end(), {place[0] / length, place[1] / length, place[2] / length});
+        if (isNew)
+            positions.insert(positions.end(),
+                             {place[0] / length, place[1] / length, place[2] / length});
         return found->second;
     };
     for (int octant = 0; octant < 8; ++octant) {
         int const sx = octant & 1 ? -1 : 1, sy = octant & 2 ? -1 : 1, sz = octant & 4 ? -1 : 1;
-        auto const at = [&](int i, int j) { return vertex({sx * i, sy * j, sz * (kCuts - i - j)}); };
+        auto const at = [&](int i, int j) {
+            return vertex({sx * i, sy * j, sz * (kCuts - i - j)});
+        };
         auto const add = [&](Index a, Index b, Index c) {
-            if (sx * sy * sz > 0) faces.push_back({a, b, c});
-            else faces.push_back({a, c, b});
+            if (sx * sy * sz > 0)
+                faces.push_back({a, b, c});
+            else
+                faces.push_back({a, c, b});
         };
         for (int i = 0; i < kCuts; ++i) {
             for (int j = 0; i + j < kCuts; ++j) {
@@ -155,7 +172,8 @@ TEST(GaussBonnet, HoldsOnLoopSurfaces) {
     options.width = options.height = 2400;
     auto const report = MakeReport();
     engine::AuditInput const input(scene, *refiner, options, report);
-    EXPECT_EQ(engine::ExtraordinaryDiscs(input, std::vector<char>(faces.size(), 1)).GetNumDiscs(), 6u);
+    EXPECT_EQ(engine::ExtraordinaryDiscs(input, std::vector<char>(faces.size(), 1)).GetNumDiscs(),
+              6u);
     auto const audit = engine::AuditGaussBonnet(input).at(0);
     EXPECT_TRUE(audit.wasAudited) << audit.reason;
     EXPECT_LT(audit.relativeError, 1e-3);
@@ -183,12 +201,14 @@ TEST_F(DiscsOf, EachExtraordinaryVertexHasOneIfTexelsResolveIt) {
 }
 
 TEST_F(DiscsOf, TheCentresOfPolygonsHaveOne) {
-    Scene tetrahedron = test::MakeScene({1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}});
+    Scene tetrahedron = test::MakeScene({1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1},
+                                        {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}});
     GiveEachFaceACell(tetrahedron, 2);
     EXPECT_EQ(MakeDiscs(tetrahedron, 256).GetNumDiscs(), 8u);  // 4 vertices, 4 faces
 }
 
-// The pole, corner 0 of face 0, is the disc's; the middle of a face belongs to texels, whose share lies between.
+// The pole, corner 0 of face 0, is the disc's; the middle of a face belongs to texels, whose share
+// lies between.
 TEST_F(DiscsOf, TheShareOfTexelsRisesFromTheVertex) {
     Scene const lantern = MakeLantern(5);
     auto const discs = MakeDiscs(lantern, 7 * 64);
