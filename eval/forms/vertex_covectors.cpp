@@ -135,7 +135,7 @@ Eigen::Vector3d VertexCovector::GetVector() const {
            determinant;
 }
 
-/// forms.md 7.2: w(T) = sum t(w_i) w(sp_i) + (quads: paths to far corners) + sum h_j (d1 w)(f_j), h
+/// [Forms 7.2]: w(T) = sum t(w_i) w(sp_i) + (quads: paths to far corners) + sum h_j (d1 w)(f_j), h
 /// = r (lambda - s)^-1.
 VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel const& wheel) {
     bool const isLoop = scheme == Sdc::SCHEME_LOOP;

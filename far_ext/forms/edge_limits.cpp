@@ -58,7 +58,7 @@ struct RegularStencil {
 };
 
 RegularStencil MakeRegularStencil(bool isLoop) {
-    if (isLoop) {  // forms.md 7.1, over 120
+    if (isLoop) {  // [Forms 7.1], over 120
         RegularStencil stencil{{44, 13, -6, -8, -6, 13, -13, -5, -1, 1, 5, 13},
                                {0, 0, 6, 8, 6, 0, 0, 5, 1, -1, -5, 0}};
         for (auto* part : {&stencil.atStart, &stencil.atEnd}) {

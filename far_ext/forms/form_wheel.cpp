@@ -13,7 +13,7 @@ using Chain = std::vector<double>;  // over the wheel's faces, or over its edges
 constexpr double kPi = std::numbers::pi;
 
 /// The circulant whose rows spread a 2-form over the corners of `count` faces round a vertex:
-/// forms.md 3.4 (Loop), 4 (Doo-Sabin's weights).
+/// [Forms 3.4] (Loop), [Forms 4] (Doo-Sabin's weights).
 std::vector<double> MakeCirculant(Sdc::SchemeType scheme, int count) {
     std::vector<double> c(static_cast<size_t>(count), 0.0);
     if (scheme == Sdc::SCHEME_CATMARK) {
@@ -145,7 +145,7 @@ public:
         }
     }
 
-    /// F(e, f) of forms.md 4, from the middle of side `from` to the centroid.
+    /// F(e, f) of [Forms 4], from the middle of side `from` to the centroid.
     void AddPathFromMiddle(int face, int from, double weight) {
         int const k = _wheel.GetNumFaces(),
                   size = _wheel.sizes[static_cast<size_t>(((face % k) + k) % k)];
