@@ -53,8 +53,8 @@ struct BakeReport {
     std::vector<Index> facesWithoutTexels;  ///< of those selected
 };
 
-/// Bakes maps of a mesh's limit surface to UDIM tiles (bake.md). Files appear one by one as they
-/// are complete; on an error or an interrupt those already complete stay.
+/// Bakes maps of a mesh's limit surface to UDIM tiles. Files appear one by one as they are
+/// complete; on an error or an interrupt those already complete stay.
 ///
 /// Memory   a few bands of 64 rows per thread, whatever the size of the image.
 /// Threads  TBB's current arena; results do not depend on it.

@@ -26,7 +26,7 @@ std::vector<FileLayout> LayOutFiles(std::vector<Map> const& maps, std::string co
 /// The options that decide pixels, in canonical form: what makes two runs' files equal.
 std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, Scene const& scene);
 
-/// Header attributes of a file (bake.md, "Files").
+/// Header attributes of a file, [Bake 7].
 std::vector<std::pair<std::string, std::string>> MakeAttributes(BakeOptions const& options,
                                                                 FileLayout const& file,
                                                                 Scene const& scene,

@@ -8,7 +8,7 @@
 
 namespace limn::engine {
 
-/// A texel this near to a face is covered by it (bake.md, "From texel to surface point").
+/// A texel this near to a face is covered by it [Bake 1].
 inline constexpr double kCoveredTexels = 1e-4;
 
 /// A square of a texture piece on which the map is nearly linear: which texels may lie in it, and

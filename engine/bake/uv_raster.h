@@ -13,8 +13,8 @@
 
 namespace limn::engine {
 
-/// Where the samples of one texture tile lie (bake.md, "From texel to surface point"). The sample
-/// of texel (x, y), y = 0 at the top, is at
+/// Where the samples of one texture tile lie [Bake 1]. The sample of texel (x, y), y = 0 at the
+/// top, is at
 ///     u = tileU + (x + offsetX) / width,   v = tileV + 1 - (y + offsetY) / height.
 struct TileGrid {
     int width = 0, height = 0;

@@ -46,7 +46,7 @@ struct Field {
     std::vector<std::array<double, 3>> faceVectors;  ///< per face, at its middle
 };
 
-/// How well the field keeps its laws (forms.md 8). Curl and divergence are relative to the largest
+/// How well the field keeps its laws [Forms 8]. Curl and divergence are relative to the largest
 /// value of the part's form.
 struct FieldAudit {
     double maxCurlOfGradient = 0.0, maxDivergenceOfVortex = 0.0;
@@ -67,7 +67,7 @@ struct FieldAudit {
 /// \throws Error   BadMesh: what far_ext::CheckForms refuses, an element that does not exist,
 ///                 strengths that do not add up to 0 where they must, a wrong number of harmonic
 ///                 coefficients.  As RefineUniformly
-/// Source  [Wang06] Sec. 5; forms.md 8
+/// Source  [Wang06] Sec. 4.2; [Forms 8]
 Field DesignField(Scene const& scene, Far::TopologyRefiner const& refiner,
                   FieldOptions const& options, FieldAudit& audit);
 

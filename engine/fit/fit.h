@@ -43,7 +43,7 @@ struct FitResult {
 /// \throws Error        BadMesh: a coordinate that is no number.  BadOption: alpha outside [0, 1]
 ///                      or with a scheme that has none
 /// \throws Interrupted
-/// Source  [LaiCheng11] Sec. 4; surface.md 1
+/// Source  [LaiCheng11] Sec. 4; [Limit 6]
 FitResult FitToLimit(Scene const& scene, FitOptions const& options);
 
 }  // namespace limn::engine

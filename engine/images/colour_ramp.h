@@ -11,7 +11,7 @@ namespace limn::engine {
 /// being corners. Its control points solve the curve's limit rule (c[i-1] + 4 c[i] + c[i+1]) / 6 =
 /// colour[i].
 ///
-/// Source   [LaiCheng11] Sec. 5; surface.md 1.4
+/// Source   [LaiCheng11] Sec. 5; [Limit 8]
 class ColourRamp {
 public:
     using Colour = std::array<double, 3>;

@@ -27,7 +27,7 @@ struct NoiseOptions {
 /// the noise N at the limit of every vertex; refined by the surface's own rules they add up on the
 /// finest level.
 ///
-/// Source   [LaiCheng11] Sec. 5; surface.md 1.4
+/// Source   [LaiCheng11] Sec. 5; [Limit 8]
 class SurfaceNoise {
 public:
     /// \throws Error  BadOption; TooLarge where the finest level would pass 2^31 indices

@@ -76,14 +76,14 @@ struct SmoothReport {
 ///
 /// Collapse  A width above what a closed component carries has no fixed point: it shrinks to
 ///           nothing with the levels. Where one shrank suspiciously, the critical width is measured
-///           on a grid of 10 000 vertices at most (surface.md 3.1).
+///           on a grid of 10 000 vertices at most [Cascade 7].
 ///
 /// \param scene   of the scheme Loop where triangles are to stay triangles
 /// \param job     told of progress, and of a metric that was frozen, sharp corners, volumes that
 ///                could not be kept
 /// \throws Error  BadMesh: not manifold or oriented two ways; a width above 1e6 of the mesh's size;
 ///                for graphs, faces that overlap in the plane.  As SmoothLevels
-/// Source  [Diewald02] Sec. 5 to 8; surface.md 3
+/// Source  [Diewald02] Sec. 5 to 8; [Cascade 2], [Cascade 9]
 Scene Smooth(Scene const& scene, Far::TopologyRefiner const& refiner, FilterWidths const& widths,
              SmoothOptions const& options, Job& job, SmoothReport& report);
 

@@ -38,7 +38,7 @@ void RequireGraph(Scene const& scene, Far::TopologyLevel const& level);
 /// \param first   the first level's rows
 /// \param widths  per vertex of the first level or of the scene, whose vertices are the first ones
 ///                there; empty: everywhere some
-/// Source  [Diewald02] Fig. 9; surface.md 3.3
+/// Source  [Diewald02] Fig. 9; [Cascade 8]
 void WarnOfSharpCorners(Scene const& scene, Far::TopologyLevel const& level,
                         far_ext::CascadeLevel const& first, std::vector<double> const& widths,
                         Job& job);

@@ -32,7 +32,7 @@ struct CascadeWidths {
 /// \param componentOfVertex  per vertex of the last level
 /// \param isWanted           per component
 /// \param check              called between steps; may throw
-/// Source  [Diewald02] Sec. 6; surface.md 3.1
+/// Source  [Diewald02] Sec. 6; [Cascade 7]
 double FindCriticalFactor(std::span<far_ext::CascadeLevel const> levels,
                           std::span<double const> positions, CascadeWidths const& widths,
                           std::span<int const> componentOfVertex, std::span<char const> isWanted,

@@ -12,7 +12,8 @@ namespace limn::eval {
 
 namespace {
 
-/// Positions of the vertices of every level: each keeps its own place of the last one.
+/// Positions of the vertices of every level: each keeps its own place of the last one. Levels need
+/// no more than angles of about the right size [Differential 6].
 std::vector<std::vector<double>> RestrictPositions(Far::TopologyRefiner const& refiner,
                                                    std::span<double const> positions) {
     std::vector<std::vector<double>> levels(static_cast<size_t>(refiner.GetMaxLevel()) + 1);
@@ -60,6 +61,8 @@ struct Misfit {
            scale = 0.0;  ///< area-weighted sums of squares: of the misfit, and of Delta
 };
 
+/// The least-squares problem and its linearisation. Norms are weighted by area: they mean the same
+/// on every mesh of the surface, and thin triangles do not rule [Differential 6].
 class AreaFit {
 public:
     AreaFit(Far::TopologyRefiner const& refiner, Multigrid& multigrid,
@@ -146,11 +149,13 @@ void AddTimes(std::vector<double>& to, double factor, std::vector<double> const&
 }
 
 /// The move that minimises |misfit - J move|, J z = (misfit(V) - misfit(V + e z)) / e, over a
-/// Krylov space.
+/// Krylov space: flexible GMRES, since the multigrid is not quite the same map twice. J^T is not
+/// needed, as it would be for normal equations [Differential 6].
 std::vector<double> AreaFit::FindStep(std::span<double const> positions, Misfit const& misfit) {
     constexpr int kMaxDimension = 12;
     constexpr double kEnough = 0.05;  // of the misfit: farther than linearisation reaches
     _multigrid.SetWeights(_refiner, FindWeights(_refiner, positions));
+    // Moves are kept beside the basis: the step is made of them, not of what went into them.
     double const size = std::sqrt(misfit.squares), extent = FindExtent(positions);
     std::vector<std::vector<double>> basis{misfit.values}, moves;
     for (double& value : basis[0]) value /= size;
@@ -158,10 +163,12 @@ std::vector<double> AreaFit::FindStep(std::span<double const> positions, Misfit 
     Eigen::VectorXd weights;
     std::vector<double> moved;
     for (int k = 0; k < kMaxDimension; ++k) {
+        // The move that the Laplacian of the present angles would answer this misfit with.
         std::vector<double> rightSide = basis[k], move(positions.size(), 0.0);
         for (size_t i = 0; i < rightSide.size(); ++i) rightSide[i] *= misfit.areas[i / 3];
         _numIterations +=
             _multigrid.Solve(rightSide, move, {.tolerance = 1e-2, .maxIterations = 20}).iterations;
+        // A difference small enough to be a derivative, large enough to be no rounding.
         double const length = FindLargest(move),
                      share = length > 0.0 ? 1e-6 * extent / length : 1.0;
         Misfit const there = TryMove(positions, move, share, moved);
@@ -205,6 +212,7 @@ AreaFitReport FitAreaLaplacian(Far::TopologyRefiner const& refiner, Multigrid& m
     std::vector<double> moved;
     while (!report.converged && report.steps < options.maxSteps) {
         std::vector<double> const step = fit.FindStep(positions, misfit);
+        // Halving stands in for damping: the first share that lowers the sum is taken.
         double share = 1.0;
         Misfit next = fit.TryMove(positions, step, share, moved);
         while (!(next.squares < misfit.squares) && share > 1.0 / 64)
@@ -216,6 +224,7 @@ AreaFitReport FitAreaLaplacian(Far::TopologyRefiner const& refiner, Multigrid& m
             misfit = std::move(next);
         }
         report.residual = relative();
+        // There may be no solution: what gains less than 1 % is as near as this gets.
         bool const isStill = share * FindLargest(step) < options.tolerance * FindExtent(positions);
         report.converged =
             report.residual <= options.tolerance || isStill || report.residual > 0.99 * last;

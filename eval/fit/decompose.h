@@ -15,7 +15,7 @@ namespace limn::eval {
 /// Values   rows of `length` numbers (1 to 4) per vertex, changed in place.
 /// Affine   all of these commute with translations, rotations and scaling.
 /// Threads  the same bits for any pool size.
-/// Source   [LaiCheng11] Sec. 3 and 6 to 7, eq. (6), (8), (9), as corrected in surface.md 1.4.
+/// Source   [LaiCheng11] Sec. 3 and 6 to 7, eq. (6), (8), (9), as corrected in [Limit 7].
 
 /// x <- (E-A)^power x.
 ///

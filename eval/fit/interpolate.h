@@ -55,7 +55,7 @@ struct SolveReport {
 /// range.
 /// Threads  immutable; Solve may be called from several threads, and gives the same bits for any
 ///          pool size.
-/// Source   [LaiCheng11] Sec. 4, eq. (5) and (7); surface.md 1.1 to 1.3.
+/// Source   [LaiCheng11] Sec. 4, eq. (5) and (7); [Limit 5], [Limit 6].
 class Interpolator {
 public:
     /// \throws Error  as LimitOperator::Build

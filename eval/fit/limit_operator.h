@@ -19,7 +19,7 @@ namespace limn::eval {
 /// Order    A is block triangular: fixed vertices first, then curves that end at those (or close),
 ///          which need nothing else, then the rest. Solvers take the stages one after the other.
 /// Threads  immutable; its methods use the pool, with the same bits for any number of threads.
-/// Source   [LaiCheng11] Sec. 3 and 4; surface.md 1.1, 1.2.
+/// Source   [LaiCheng11] Sec. 3 and 4; [Limit 2], [Limit 5].
 class LimitOperator {
 public:
     enum class Stage : unsigned char { Fixed, Curve, Rest };

@@ -11,7 +11,7 @@ namespace limn::eval {
 /// sides, and bipartite, such as a cube or a hexagonal prism. There A maps the vector that is +1
 /// and -1 in turn to zero, and data lie in the range of A where they are orthogonal to it.
 ///
-/// Source  surface.md 1.2; [LaiCheng11] Appendix B, which gives such meshes up.
+/// Source  [Limit 5]; [LaiCheng11] Appendix B, which gives such meshes up.
 class SingularComponents {
 public:
     explicit SingularComponents(LimitOperator const& A);

@@ -33,7 +33,7 @@ struct HodgeParts {
 /// Cost      each system is factorised once (nested dissection), when first needed; then a solve
 ///           per change of strengths.
 /// Threads   one at a time.
-/// Source    [Wang06] Sec. 3 and 5; forms.md 8.
+/// Source    [Wang06] Sec. 4.2; [Forms 8], [Forms 9].
 class FieldDesigner {
 public:
     /// \param level      a base level that far_ext::CheckForms has passed; must outlive this

@@ -28,7 +28,7 @@ struct FieldIndices {
 
 /// \param form  per edge; 0 counts as positive, on boundary edges as their face runs, so that every
 ///              edge has a direction and a field straight across a boundary is not singular there
-/// Source  Gortler, Gotsman, Thurston 2006 (discrete one-forms on meshes); forms.md 8
+/// Source  [Gortler06]; [Forms 10]
 FieldIndices FindFieldIndices(Far::TopologyLevel const& level, std::span<double const> form);
 
 }  // namespace limn::eval

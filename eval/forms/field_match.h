@@ -24,7 +24,7 @@ struct WantedVector {
 ///
 /// \param positions  3 per vertex of the level
 /// \throws Error     as far_ext::FindHodgeStars
-/// Source            [Wang06] Sec. 5
+/// Source            [Wang06] Sec. 4.2; [Forms 8]
 std::vector<double> MatchVectors(Far::TopologyLevel const& level, std::span<double const> positions,
                                  std::span<WantedVector const> wanted);
 

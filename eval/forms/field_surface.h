@@ -22,7 +22,7 @@ namespace limn::eval {
 /// Else     next to extraordinary vertices, boundaries and creases: the exact vectors at the
 ///          refined face's corners, blended and projected on the tangent plane.
 /// Threads  immutable once built; a Sampler per thread.
-/// Source   [Wang06] Sec. 4 and 5; forms.md 4 (regular quads), 7
+/// Source   [Wang06] Sec. 4.1; [Forms 7.3]
 class FieldSurface {
 public:
     /// \param refiner    unrefined topology of the cage

@@ -14,7 +14,7 @@ namespace limn::eval {
 /// 4): quadratic B-splines along the edges times cubic ones across, over the 24 edges of the 3 x 3
 /// quads round it.
 ///
-/// Source  forms.md 4 (regular quads: the tensor product of which this is the limit)
+/// Source  [Forms 7.3]; [Forms 4] has the tensor product of which this is the limit
 class QuadFormPatch {
 public:
     /// False, and nothing done, if the quad is not regular.

@@ -17,7 +17,7 @@ namespace limn::eval {
 /// \param isRelative  forms that vanish on boundary edges (a field normal to the boundary) rather
 ///                    than any
 /// Order    generators by their edge. A form has integers only, mostly 0 and 1.
-/// Source   tree-cotree decomposition (Eppstein 2003); forms.md 8.
+/// Source   [Eppstein03]; [Forms 9].
 std::vector<std::vector<double>> FindClosedForms(Far::TopologyLevel const& level, bool isRelative);
 
 }  // namespace limn::eval

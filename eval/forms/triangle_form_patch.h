@@ -17,7 +17,7 @@ namespace limn::eval {
 /// The polynomials are not written down: on a lattice the exact limits at the 15 vertices of a
 /// triangle refined twice are known (VertexCovectors), and 15 points determine a quartic.
 ///
-/// Source  [Wang06] Sec. 4.1; forms.md 3.5, 7.2
+/// Source  [Wang06] Sec. 4.1; [Forms 7.2], [Forms 7.3]
 class TriangleFormPatch {
 public:
     /// False, and nothing done, if the triangle is not regular.

@@ -22,6 +22,7 @@ struct TangentMask {
     std::vector<double> ends, corners;
 };
 
+/// Of the waves of one turn round a vertex [Limit 10]; half a turn over a fan is the same wave.
 double FindEigenvalue(bool isLoop, double angle) {
     double const c = std::cos(angle);
     if (isLoop) return 0.375 + 0.25 * c;
@@ -35,7 +36,8 @@ TangentMask MakeEmpty(Wheel const& wheel) {
     return mask;
 }
 
-/// The two tangents of a smooth interior vertex, a quarter turn apart.
+/// The two tangents of a smooth interior vertex, a quarter turn apart: cosine and sine of one turn,
+/// with the ratio of edge ends to far corners that the eigenvector has [Forms 7.2].
 std::array<TangentMask, 2> MakeSmoothMasks(bool isLoop, Wheel const& wheel) {
     std::array<TangentMask, 2> masks{MakeEmpty(wheel), MakeEmpty(wheel)};
     int const k = wheel.GetNumFaces();
@@ -53,7 +55,8 @@ std::array<TangentMask, 2> MakeSmoothMasks(bool isLoop, Wheel const& wheel) {
 }
 
 /// Along and across a boundary or crease curve: the fan of `size` faces that starts at spoke
-/// `first`.
+/// `first`. OpenSubdiv's mask across is no eigenvector of its own rule for larger fans; this one is
+/// [Forms 7.2].
 std::array<TangentMask, 2> MakeCurveMasks(bool isLoop, Wheel const& wheel, int first, int size) {
     std::array<TangentMask, 2> masks{MakeEmpty(wheel), MakeEmpty(wheel)};
     int const k = wheel.GetNumFaces(), numSpokes = wheel.GetNumSpokes();
@@ -63,7 +66,7 @@ std::array<TangentMask, 2> MakeCurveMasks(bool isLoop, Wheel const& wheel, int f
     end(masks[0], 0) = 1.0;
     end(masks[0], size) = -1.0;
     TangentMask& across = masks[1];
-    if (size == 1) {  // an ear
+    if (size == 1) {  // an ear: the wave has no inner spoke, the height of the triangle is left
         across.eigenvalue = 0.25;
         across.vertex = -1.0;
         end(across, 0) = end(across, 1) = 0.5;
@@ -78,6 +81,8 @@ std::array<TangentMask, 2> MakeCurveMasks(bool isLoop, Wheel const& wheel, int f
             (std::sin(angle * j) + std::sin(angle * (j + 1))) / (4.0 * (4.0 * lambda - 1.0));
         cornerSum += across.corners[static_cast<size_t>((first + j) % k)] = corner;
     }
+    // At the ends the curve's own rule: what the eigenvalue equation leaves for them; the vertex
+    // takes the rest, so that the mask is blind to translations.
     double const firstCorner = across.corners[static_cast<size_t>(first % k)];
     double const atEnds =
         isLoop ? (std::sin(angle) / 8.0 - sum / 8.0) / (lambda - 0.25)
@@ -107,6 +112,7 @@ std::array<TangentMask, 2> MakeMasks(bool isLoop, Wheel const& wheel) {
             (!wheel.isInterior && (i == 0 || i == last)))
             cuts.push_back(i);
     }
+    // A wheel in one piece has two tangents; one that is cut shows its first fan's.
     bool const isSmooth = wheel.isInterior && cuts.size() < 2;
     if (isSmooth) return MakeSmoothMasks(isLoop, wheel);
     int const size = cuts[1] - cuts[0];
@@ -125,6 +131,7 @@ Eigen::Vector3d VertexCovector::GetNormal() const {
                : Eigen::Vector3d::Zero();
 }
 
+/// By the inverse of the tangents' Gram matrix: whatever their length and angle, V.T_a = w(T_a).
 Eigen::Vector3d VertexCovector::GetVector() const {
     double const e = tangents[0].squaredNorm(), f = tangents[0].dot(tangents[1]),
                  g = tangents[1].squaredNorm();
@@ -135,7 +142,7 @@ Eigen::Vector3d VertexCovector::GetVector() const {
            determinant;
 }
 
-/// forms.md 7.2: w(T) = sum t(w_i) w(sp_i) + (quads: paths to far corners) + sum h_j (d1 w)(f_j), h
+/// [Forms 7.2]: w(T) = sum t(w_i) w(sp_i) + (quads: paths to far corners) + sum h_j (d1 w)(f_j), h
 /// = r (lambda - s)^-1.
 VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel const& wheel) {
     bool const isLoop = scheme == Sdc::SCHEME_LOOP;
@@ -167,6 +174,8 @@ VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel co
             else
                 row.edges[numSpokes + static_cast<size_t>(face * (numSides - 2) + m - 1)] += weight;
         };
+        // The mask as a chain tau with boundary t, and r: what one step of S1 makes of it beside
+        // lambda tau, as a 2-chain.
         Eigen::VectorXd residue = Eigen::VectorXd::Zero(k);
         for (size_t i = 0; i < numSpokes; ++i) {
             double const t = mask.ends[i];
@@ -187,6 +196,8 @@ VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel co
                        (chain(local.flow[static_cast<size_t>(j)]) +
                         chain(local.flow[(static_cast<size_t>(j) + 1) % numSpokes]));
         }
+        // Faces are added until the chain is an eigenvector: h s + r = lambda h, since d1 S1 = S2
+        // d1.
         if (residue.isZero(0.0)) continue;
         Eigen::MatrixXd const system =
             (mask.eigenvalue * Eigen::MatrixXd::Identity(k, k) - shares).transpose();

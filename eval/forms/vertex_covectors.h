@@ -38,7 +38,7 @@ struct VertexCovector {
 /// \param form       per edge of the level
 /// \param positions  3 per vertex of the level
 /// \pre    faces are all quads (Catmull-Clark) or triangles (Loop); CheckForms has passed
-/// Source  [Wang06] Sec. 4.4; forms.md 7.2
+/// Source  [Wang06] Sec. 4.1; [Forms 7.2]
 class VertexCovectors {
 public:
     VertexCovectors(Far::TopologyRefiner const& refiner, int level);

@@ -78,7 +78,7 @@ struct PatchRun {
 ///
 /// Depth    A piece at distance d from an irregular corner (in units of the domain) has depth
 ///          floor(-log2 d) + 1. Samples nearer than 2^-maxDepth are moved radially out to that
-///          distance (bake.md, "Extraordinary vertices").
+///          distance [Limit 10].
 /// Threads  One per thread; it reuses its memory from face to face.
 class FaceTree {
 public:

@@ -57,7 +57,7 @@ struct SurfaceBatch {
     unsigned* degenerate;  ///< one per sample: 1 where no safe tangent plane is found, see below
 };
 
-/// Evaluates a batch (bake.md, "What is measured at a point").
+/// Evaluates a batch, [Bake 3].
 ///
 /// A sample with |x_s x x_t|^2 < 1e-10 |x_s|^2 |x_t|^2 is flagged; its outputs are finite and to be
 /// replaced. The same bits on every CPU: one source, compiled per instruction set without

@@ -11,7 +11,7 @@
 namespace limn::eval {
 
 /// First and second fundamental forms turned into curvatures, in 1/length (Gaussian: 1/length^2).
-/// A sphere of radius r seen from outside has k1 = k2 = +1/r. Source: bake.md, "What is measured".
+/// A sphere of radius r seen from outside has k1 = k2 = +1/r. Source: [Bake 3].
 struct Curvature {
     double mean = 0.0, gaussian = 0.0, k1 = 0.0, k2 = 0.0;
     Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< of k1; a line, its sign is free

@@ -15,7 +15,8 @@ namespace limn::far_ext {
 
 namespace {
 
-/// The dense system of a half grows with the square of its fan: 1500 unknowns for 64 quads.
+/// The dense system of a half [Forms 7.1] grows with the square of its fan: 1500 unknowns for 64
+/// quads.
 constexpr int kMaxFan = 64;
 
 int FindSpoke(Far::TopologyLevel const& level, Index vertex, Index edge) {
@@ -52,13 +53,13 @@ Index GetEnd(Far::TopologyLevel const& level, Index edge, Index from) {
 }
 
 /// Limit of a regular edge a -> b over the wheels of a (from the spoke to b) and of b (from the
-/// spoke to a).
+/// spoke to a): an edge of both wheels has its weight in one of them.
 struct RegularStencil {
     std::vector<double> atStart, atEnd;
 };
 
 RegularStencil MakeRegularStencil(bool isLoop) {
-    if (isLoop) {  // forms.md 7.1, over 120
+    if (isLoop) {  // [Forms 7.1], over 120
         RegularStencil stencil{{44, 13, -6, -8, -6, 13, -13, -5, -1, 1, 5, 13},
                                {0, 0, 6, 8, 6, 0, 0, 5, 1, -1, -5, 0}};
         for (auto* part : {&stencil.atStart, &stencil.atEnd}) {
@@ -117,7 +118,8 @@ WeightRow FindCurve(Far::TopologyLevel const& level, Index edge) {
 }
 
 /// The edges within `rings` steps of a vertex, in an order that depends on what the neighbourhood
-/// looks like alone: the same for all neighbourhoods that look alike.
+/// looks like alone: the same for all neighbourhoods that look alike. That a level's list and the
+/// next one's agree place by place is what makes a subdivision step a square matrix [Forms 7.1].
 std::vector<OrientedEdge> WalkNeighbourhood(Far::TopologyLevel const& level, Index vertex,
                                             int rings) {
     struct Stop {
@@ -159,6 +161,8 @@ EdgeLimits::EdgeLimits(Far::TopologyRefiner const& refiner, int level)
       _fine(refiner.GetLevel(level + 1)),
       _s1(BuildFormStencils(refiner, level + 1).s1) {}
 
+/// What the limit along a half depends on: sharp edges shut a fan off from the rest of the wheel.
+/// On a refined level, since the base may have more irregular ends than one.
 EdgeLimits::Fan EdgeLimits::FindFan(Index vertex, Index edge) const {
     auto const edges = _fine.GetVertexEdges(vertex);
     auto const faces = _fine.GetVertexFaces(vertex);
@@ -197,7 +201,8 @@ EdgeLimits::Fan EdgeLimits::FindFan(Index vertex, Index edge) const {
     return {kind, first, size == 0 ? k : size, (spoke - first + count) % count};
 }
 
-/// Builds a neighbourhood that is regular but for its middle, and solves there.
+/// Builds a neighbourhood that is regular but for its middle, and solves there: refined until the
+/// middle's four rings, all that a half reads and its image, see nothing of the template's rim.
 EdgeLimits::HalfLimit EdgeLimits::SolveHalf(Kind kind, int size, int spoke) const {
     bool const isLoop = _refiner.GetSchemeType() == Sdc::SCHEME_LOOP,
                isOpen = kind == Kind::Curve || kind == Kind::Corner;
@@ -214,6 +219,7 @@ EdgeLimits::HalfLimit EdgeLimits::SolveHalf(Kind kind, int size, int spoke) cons
         else
             mesh.faceVertices.insert(mesh.faceVertices.end(), {0, a, 1 + numSpokes + i, b});
     }
+    // Fans of a crease need no mark: a boundary has the crease's rule [Forms 5].
     if (kind == Kind::Corner) {
         mesh.cornerVertices.push_back(0);
         mesh.cornerSharpness.push_back(Sdc::Crease::SHARPNESS_INFINITE);
@@ -234,6 +240,8 @@ EdgeLimits::HalfLimit EdgeLimits::SolveHalf(Kind kind, int size, int spoke) cons
 
     auto const unknowns = WalkNeighbourhood(coarse, middle, kRings),
                images = WalkNeighbourhood(fine, coarse.GetVertexChildVertex(middle), kRings);
+    // A: one step of S1 on the neighbourhood. What four refined rings read lies within four coarse
+    // ones.
     Eigen::Index const count = static_cast<Eigen::Index>(unknowns.size());
     std::vector<int> place(static_cast<size_t>(coarse.GetNumEdges()), -1);
     for (size_t i = 0; i < unknowns.size(); ++i) place[unknowns[i].edge] = static_cast<int>(i);
@@ -248,7 +256,8 @@ EdgeLimits::HalfLimit EdgeLimits::SolveHalf(Kind kind, int size, int spoke) cons
                     image.sign * unknowns[static_cast<size_t>(column)].sign * s1.weights[k];
         }
     }
-    // The regular limit one step out along the spoke: from its end straight on.
+    // l: the regular limit one step out along the spoke, from its end straight on. On the next
+    // level that edge and the half's own are what the half is made of, hence L = l A + L A.
     int const firstSpoke = kind == Kind::Dart ? FindSharpSpoke(coarse, middle) : 0;
     Index const spokeEdge =
         coarse.GetVertexEdges(middle)[(firstSpoke + spoke) % coarse.GetVertexEdges(middle).size()];
@@ -281,6 +290,7 @@ EdgeLimits::HalfLimit EdgeLimits::SolveHalf(Kind kind, int size, int spoke) cons
             stencil.atEnd);
     }
 
+    // L (I - A) = l A; S1 halves, so that 1 is no eigenvalue of A.
     Eigen::MatrixXd const system = (Eigen::MatrixXd::Identity(count, count) - A).transpose();
     Eigen::VectorXd rest = system.partialPivLu().solve((regular * A).transpose());
     auto const take = [&](std::vector<OrientedEdge> const& edges) {
@@ -319,7 +329,8 @@ void EdgeLimits::AddRefined(Index fineEdge, double weight, WeightRow& row) const
         row.Add(_s1.indices[k], weight * _s1.weights[k]);
 }
 
-/// Adds the limit along the child at `vertex` of a coarse edge, from the vertex to the middle.
+/// Adds the limit along the child at `vertex` of a coarse edge, from the vertex to the middle,
+/// which is regular: refining once leaves one irregular end to a half [Forms 7.1].
 void EdgeLimits::AddHalf(Index vertex, Index edge, double sign, WeightRow& row) {
     Index const v = _coarse.GetVertexChildVertex(vertex), m = _coarse.GetEdgeChildVertex(edge);
     Index const half =

@@ -25,7 +25,7 @@ namespace limn::far_ext {
 ///            regular limit one step out. L depends on v's fan and the spoke alone and is found
 ///            once for each.
 /// Threads    one at a time.
-/// Source     forms.md 7.1
+/// Source     [Forms 7.1]
 class EdgeLimits {
 public:
     /// \param refiner  refined beyond `level`, with full topology

@@ -17,7 +17,7 @@ namespace limn::far_ext {
 ///            the same for constant fields.
 /// \param positions  3 per vertex of the level
 /// \pre              faces have areas (FindHodgeStars refuses others)
-/// Source            [Wang06] Sec. 3; forms.md 8
+/// Source            [Wang06] Sec. 4.1; [Forms 8]
 SparseRows BuildFaceVectors(Far::TopologyLevel const& level, std::span<double const> positions);
 
 }  // namespace limn::far_ext

@@ -12,7 +12,7 @@ namespace limn::far_ext {
 /// \param next  the level after; without one sharpness stays as it is: that of the limit, where
 ///              none fades any more
 /// \pre         the vertex has faces
-/// Source       forms.md 1, 5
+/// Source       [Forms 1], [Forms 5]
 Wheel FindWheel(Far::TopologyRefiner const& refiner, Far::TopologyLevel const& level,
                 Far::TopologyLevel const* next, Index vertex);
 

@@ -12,7 +12,7 @@ namespace limn::far_ext {
 // (the integral along it), a 2-form per face (the integral over it). Edges are Far's; each runs
 // from its lower vertex to its higher one. Faces run as they are listed.
 //
-// Source  [Wang06] Sec. 3; forms.md 1.
+// Source  [Wang06] Sec. 2; [Forms 1].
 
 /// An edge and whether the walk at hand goes along its direction (+1) or against it (-1).
 struct OrientedEdge {

@@ -201,7 +201,7 @@ void FormStencilBuilder::MeasureCentralChild(Index face) {
     _s2.SetSize(_coarse.GetFaceChildFaces(face)[3], size);
 }
 
-/// forms.md 3.3: (1 - sum p) f + sum p g - sum of the corners' y, with the y written out.
+/// [Forms 3.3]: (1 - sum p) f + sum p g - sum of the corners' y, with the y written out.
 void FormStencilBuilder::WriteCentralChild(Index face) {
     Index const fineFace = _coarse.GetFaceChildFaces(face)[3];
     auto const edges = _coarse.GetFaceEdges(face);
@@ -235,7 +235,7 @@ void FormStencilBuilder::MeasureEdgesToCentre(Index face) {
     }
 }
 
-/// forms.md 4, odd edges: from the middle of a side e to the centroid, (1 - q) F(e, f) - q F(e, g).
+/// [Forms 4], odd edges: from the middle of a side e to the centroid, (1 - q) F(e, f) - q F(e, g).
 void FormStencilBuilder::WriteEdgesToCentre(Index face) {
     Index const centre = _coarse.GetFaceChildVertex(face);
     auto const edges = _coarse.GetFaceEdges(face);

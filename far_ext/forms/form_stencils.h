@@ -16,8 +16,8 @@ namespace limn::far_ext {
 ///
 /// Shape    S1: edges of the level x edges of the one before, S2: faces x faces; Far's numbering,
 ///          form_operators.h's directions. Columns of S2 add up to 1, its weights are >= 0.
-/// Source   [Wang06] Sec. 4; forms.md 1 to 6. Valence 3 and boundaries as in forms.md, where the
-///          paper has others.
+/// Source   [Wang06] Sec. 3; [Forms 2]. limn's own: boundaries, creases [Forms 5], valence 3
+///          [Forms 6].
 struct FormStencils {
     SparseRows s1, s2;
 };

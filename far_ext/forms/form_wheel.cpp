@@ -13,7 +13,10 @@ using Chain = std::vector<double>;  // over the wheel's faces, or over its edges
 constexpr double kPi = std::numbers::pi;
 
 /// The circulant whose rows spread a 2-form over the corners of `count` faces round a vertex:
-/// forms.md 3.4 (Loop), 4 (Doo-Sabin's weights).
+/// [Forms 3.4] (Loop), [Forms 4] (Doo-Sabin's weights).
+///
+/// Loop's beta puts the second eigenvalue at 1/2, that of a linear density, for up to 6 faces;
+/// beyond, the regular weights stay. Places that coincide where faces are few add up.
 std::vector<double> MakeCirculant(Sdc::SchemeType scheme, int count) {
     std::vector<double> c(static_cast<size_t>(count), 0.0);
     if (scheme == Sdc::SCHEME_CATMARK) {
@@ -35,7 +38,8 @@ std::vector<double> MakeCirculant(Sdc::SchemeType scheme, int count) {
     return c;
 }
 
-/// Spokes at which a rule cuts the wheel into fans; none if it is in one piece.
+/// Spokes at which a rule cuts the wheel into fans; none if it is in one piece. A single sharp
+/// spoke is a dart: one can walk round it, so nothing is cut [Forms 5].
 std::vector<int> FindCuts(Wheel const& wheel, Wheel::Rule const& rule) {
     std::vector<int> cuts;
     int const last = wheel.GetNumSpokes() - 1;
@@ -61,6 +65,7 @@ void AddShares(Sdc::SchemeType scheme, Wheel const& wheel, Wheel::Rule const& ru
     std::vector<int> const cuts = FindCuts(wheel, rule);
     if (cuts.empty()) {
         std::vector<double> const c = MakeCirculant(scheme, k);
+        // Less than 1/4 at valence 3, where a swirl would never decay [Forms 6].
         double const rowMu = k == 3 ? 1.0 / 16.0 : 0.25;
         for (int i = 0; i < k; ++i) {
             for (int j = 0; j < k; ++j) add(i, j, rowMu, c[static_cast<size_t>((j - i + k) % k)]);
@@ -72,7 +77,9 @@ void AddShares(Sdc::SchemeType scheme, Wheel const& wheel, Wheel::Rule const& ru
     for (size_t fan = 0; fan < numFans; ++fan) {
         int const first = cuts[fan];
         int const size = fan + 1 < cuts.size() ? cuts[fan + 1] - first : cuts[0] + k - first;
-        std::vector<double> const c = MakeCirculant(scheme, 2 * size);  // reflected in both borders
+        // Reflected in both borders: a fan is half of a wheel with a mirror, so that nothing
+        // crosses it and rows and columns still add up to 1 [Forms 3.4].
+        std::vector<double> const c = MakeCirculant(scheme, 2 * size);
         double const rowMu = size == 1 && rule.isCrease ? 0.125 : 0.25;
         for (int i = 0; i < size; ++i) {
             int const row = (first + i) % k;
@@ -87,6 +94,9 @@ void AddShares(Sdc::SchemeType scheme, Wheel const& wheel, Wheel::Rule const& ru
 }
 
 /// Takes out of all x their mean over the spokes where a rule wants none: its cuts, or all spokes.
+///
+/// The recursion leaves one constant open. On a crease it is spent so that the crease knows its own
+/// data only, elsewhere so that no spoke is preferred [Forms 5].
 void Centre(Wheel const& wheel, std::vector<Chain>& flow) {
     Chain mean(flow[0].size(), 0.0);
     for (Wheel::Rule const* rule : {&wheel.parent, &wheel.child}) {
@@ -145,7 +155,7 @@ public:
         }
     }
 
-    /// F(e, f) of forms.md 4, from the middle of side `from` to the centroid.
+    /// F(e, f) of [Forms 4], from the middle of side `from` to the centroid.
     void AddPathFromMiddle(int face, int from, double weight) {
         int const k = _wheel.GetNumFaces(),
                   size = _wheel.sizes[static_cast<size_t>(((face % k) + k) % k)];
@@ -175,7 +185,8 @@ private:
     std::vector<double> _weights;
 };
 
-/// y_i: the curl part of the odd edge that cuts the corner of face i.
+/// y_i: the curl part of the odd edge that cuts the corner of face i. Columns add up to mu, as
+/// those of s do, and regular rows come out as the convolution's [Forms 3.3].
 Chain MakeOddCurl(Wheel const& wheel, Chain const& mu, int i) {
     int const k = wheel.GetNumFaces(), spokes = wheel.GetNumSpokes();
     double const before = wheel.faceShares[static_cast<size_t>(i)],
@@ -198,6 +209,8 @@ void AddMiddle(Wheel const& wheel, int i, double sign, EdgeChain& chain) {
     chain.AddSpoke(spoke + 1, sign * p);
 }
 
+/// Star flow of S0[m_i] - S0[v']: what each neighbour has, along its spoke. What v has need not be
+/// told, since both rows add up to 1 [Forms 3.2].
 EdgeChain MakeLoopEven(Wheel const& wheel, int i) {
     EdgeChain chain(wheel);
     AddMiddle(wheel, i, 1.0, chain);
@@ -206,6 +219,8 @@ EdgeChain MakeLoopEven(Wheel const& wheel, int i) {
     return chain;
 }
 
+/// The same difference as ways from v: half a spoke, from there to both face points, less the
+/// vertex rule's ways to its neighbours and face points [Forms 4].
 EdgeChain MakeCatmarkEven(Wheel const& wheel, int i) {
     EdgeChain chain(wheel);
     double const q = wheel.faceShares[static_cast<size_t>(i)];
@@ -253,7 +268,8 @@ WheelRows MakeWheelRows(Sdc::SchemeType scheme, Wheel const& wheel) {
     AddShares(scheme, wheel, wheel.parent, rows.share, rows.mu);
     if (wheel.child.share != 0.0) AddShares(scheme, wheel, wheel.child, rows.share, rows.mu);
 
-    // s from D, y, and x by the recursion x_{i+1} - x_i = y_i - s_i.
+    // x by x_{i+1} - x_i = y_i - s_i: commutation at each corner child, whose sides are two even
+    // edges and what the odd one (Catmull-Clark: the two to the face point) leaves [Forms 2].
     std::vector<Chain> curls;
     rows.flow.assign(1, Chain(k, 0.0));
     for (int i = 0; i < numFaces; ++i) {

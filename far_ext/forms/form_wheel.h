@@ -12,7 +12,7 @@ namespace limn::far_ext {
 /// f_0 .. f_{k-1} counter- clockwise with a spoke (v -> w_i) before each; at a boundary one more
 /// spoke after the last.
 ///
-/// Source  forms.md 1 (wheels), 3.1 and 4 (weights), 5 (sharp features).
+/// Source  [Forms 1] (wheels), [Forms 3.1] and [Forms 4] (weights), [Forms 5] (sharp features).
 struct Wheel {
     bool isInterior = true;
     std::vector<int> sizes;           ///< corners of the k faces
@@ -52,7 +52,7 @@ struct WheelRows {
 /// points (Catmull-Clark), plus the boundary of the chains x and y that make S1 commute with S2.
 ///
 /// \pre scheme is Loop (all sizes 3) or Catmull-Clark
-/// Source  [Wang06] Sec. 4; forms.md 3, 4, 5, 6
+/// Source  [Wang06] Sec. 3; [Forms 3], [Forms 4], [Forms 5], [Forms 6]
 WheelRows MakeWheelRows(Sdc::SchemeType scheme, Wheel const& wheel);
 
 /// The smooth interior wheel of k triangles (Loop) or quads.

@@ -19,7 +19,7 @@ namespace limn::far_ext {
 /// Guard      *1 is at least 1e-3 of its mean: negative and vanishing sums (flat pairs of obtuse
 ///            triangles, squares cut in two) would make the solves indefinite; all identities hold
 ///            for any positive *1.
-/// Source     [Wang06] Sec. 3; forms.md 8.
+/// Source     [Wang06] Sec. 4.2; [Forms 8].
 struct HodgeStars {
     std::vector<double> edge;  ///< *1, per edge; positive
     std::vector<double> area;  ///< per face; positive

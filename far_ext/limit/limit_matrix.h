@@ -16,7 +16,7 @@ namespace limn::far_ext {
 /// Weights add up to 1 in each row; no unit. On a closed Catmull-Clark mesh the eigenvalues lie in
 /// (0, 1]; 0 can
 ///         occur where all valences are 3 (a cube).
-/// Source  [LaiCheng11] Sec. 3, Appendix B; surface.md 1.1.
+/// Source  [LaiCheng11] Sec. 3, Appendix B; [Limit 2], [Limit 5].
 class LimitMatrix {
 public:
     /// Builds A of one level in linear time; alpha as in LimitOptions.

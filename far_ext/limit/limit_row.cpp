@@ -31,12 +31,15 @@ bool LimitRowBuilder::HasLimit(Index vertex) const {
                        [&](Index face) { return !_level.IsFaceHole(face); });
 }
 
+/// The kinds of [Limit 3]. Boundaries are infinitely sharp edges here: OpenSubdiv tags them so.
 LimitRow::Kind LimitRowBuilder::Classify(Index vertex) const {
     using Kind = LimitRow::Kind;
     if (_refiner.GetSchemeType() == Sdc::SCHEME_BILINEAR || !HasLimit(vertex)) return Kind::Fixed;
     bool const isManifold = !_level.IsVertexNonManifold(vertex);
     if (_level.GetVertexRule(vertex) == Sdc::Crease::RULE_SMOOTH && isManifold &&
         !_level.IsVertexBoundary(vertex)) {
+        // Triangles of that option have other edge points; the closed form counts on the usual
+        // ones.
         bool const hasOwnTriangleRule =
             _refiner.GetSchemeType() == Sdc::SCHEME_CATMARK &&
             _refiner.GetSchemeOptions().GetTriangleSubdivision() == Sdc::Options::TRI_SUB_SMOOTH;
@@ -52,7 +55,8 @@ LimitRow::Kind LimitRowBuilder::Classify(Index vertex) const {
     auto const edges = _level.GetVertexEdges(vertex);
     auto const numSharp = std::count_if(edges.begin(), edges.end(),
                                         [&](Index e) { return _level.IsEdgeInfSharp(e); });
-    if (numSharp > 2) return Kind::Fixed;
+    if (numSharp > 2) return Kind::Fixed;  // a corner by rule
+    // While a sharpness fades the vertex obeys neither rule; its limit is found by refining.
     bool const isSemiSharp =
         _level.IsVertexSemiSharp(vertex) ||
         std::any_of(edges.begin(), edges.end(), [&](Index e) { return _level.IsEdgeSemiSharp(e); });
@@ -80,7 +84,9 @@ void LimitRowBuilder::Build(Index vertex, LimitRow& row) {
     }
 }
 
-/// D A: centre n^2 - n + p n + g sum 1/d, edge q + g (1/d + 1/d'), other vertices of a face g/d.
+/// D A: centre n^2 - n + p n + g sum 1/d, edge q + g (1/d + 1/d'), other vertices of a face g/d:
+/// the limit mask (n^2, 4, 1) after one refinement, collected by what a face point hands to its
+/// corners [Limit 2]; p, q, g and D with alpha [Limit 4].
 void LimitRowBuilder::BuildCatmark(Index vertex, LimitRow& row) const {
     bool const isStationary = _options.alphaRule == LimitOptions::AlphaRule::Stationary;
     double const a = _options.alpha;
@@ -101,6 +107,7 @@ void LimitRowBuilder::BuildCatmark(Index vertex, LimitRow& row) const {
         isUniform &= vertices.size() == firstSize;
         areEven &= vertices.size() % 2 == 0;
     }
+    // Where all of a component is such, A loses its alternating vector [Limit 5].
     row.isEvenCubic = row.numEdges == 3 && areEven && a == 0.0;
 
     double faceSum = 0.0;  // sum of g/d
@@ -112,6 +119,8 @@ void LimitRowBuilder::BuildCatmark(Index vertex, LimitRow& row) const {
         for (int k = 1; k < size; ++k) {
             Index const at = vertices[(corners[i] + k) % size];
             bool const isEdge = k == 1 || k == size - 1;
+            // An edge neighbour is met by both faces beside its edge, with different shares where
+            // these differ in size; uniform rows know the sum beforehand.
             if (isUniform && isEdge) continue;
             if (isEdge) {
                 auto const edge =
@@ -129,7 +138,8 @@ void LimitRowBuilder::BuildCatmark(Index vertex, LimitRow& row) const {
     for (double& weight : row.weights) weight /= row.scale;
 }
 
-/// chi = 1 / (n + 3/(8 beta)), beta = (5/8 - (3/8 + cos(2 pi/n)/4)^2) / n.
+/// chi = 1 / (n + 3/(8 beta)), beta = (5/8 - (3/8 + cos(2 pi/n)/4)^2) / n: the left eigenvector of
+/// Loop's step [Limit 2].
 void LimitRowBuilder::BuildLoop(Index vertex, LimitRow& row) {
     auto const faces = _level.GetVertexFaces(vertex);
     auto const corners = _level.GetVertexFaceLocalIndices(vertex);
@@ -151,6 +161,7 @@ void LimitRowBuilder::BuildLoop(Index vertex, LimitRow& row) {
     row.centre = 1.0 - static_cast<double>(n) * chi;
 }
 
+/// The limit of a cubic B-spline curve, (1, 4, 1)/6, whatever faces lie beside it [Limit 3].
 void LimitRowBuilder::BuildCurve(Index vertex, LimitRow& row) const {
     for (Index edge : _level.GetVertexEdges(vertex)) {
         if (!_level.IsEdgeInfSharp(edge)) continue;
@@ -162,6 +173,8 @@ void LimitRowBuilder::BuildCurve(Index vertex, LimitRow& row) const {
     row.edge = 1.0 / 6.0;
 }
 
+/// By the ring of any face at the vertex that is no hole: they all have the same limit there. Rings
+/// repeat (a semi-sharp crease has one after another), so each is refined once [Limit 3].
 void LimitRowBuilder::BuildOther(Index vertex, LimitRow& row) {
     if (!_gatherer) _gatherer = std::make_unique<FaceRingGatherer>(_level, -1);
     auto const faces = _level.GetVertexFaces(vertex);

@@ -58,7 +58,7 @@ struct LimitRow {
 /// Order    any; asking for the vertices in order reads memory in order.
 /// Exact    where OpenSubdiv's Limit is not: interior vertices of valence 2, and darts (Limit takes
 ///          their mask for that of a smooth vertex).
-/// Source   surface.md 1.1 = one refinement followed by the limit mask; checked against OpenSubdiv.
+/// Source   [Limit 2], [Limit 3], [Limit 4]; checked against OpenSubdiv.
 class LimitRowBuilder {
 public:
     /// \param refiner  kept by reference; its level with all relations (a base level has them)

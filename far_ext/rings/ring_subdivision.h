@@ -21,7 +21,7 @@ struct SubDomain {
 ///
 /// Far's own rules do the weights: the ring becomes a small Far refiner, refined once, through
 /// which the identity is pushed in double.
-/// Source  bake.md, "Extraordinary vertices"; Stam 1998 for the idea of stationary rings.
+/// Source  [Limit 9]; [Stam98] for the idea of stationary rings.
 struct RingSubdivision {
     struct Child {
         FaceRing ring;

@@ -244,7 +244,7 @@ TEST_F(Cli, BakeWithoutTextureCoordinatesIsRefused) {
 }
 
 TEST_F(Cli, PositionsBeyondFloatReachNoPixel) {
-    // bake.md: "No pixel is ever NaN or infinite". To refuse the mesh is as good as to clamp.
+    // No pixel is ever infinite or no number [Bake 4]. To refuse the mesh is as good as to clamp.
     std::string const mesh = folder.Write(
         "m.obj", "v 1e300 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
     Outcome const outcome =
@@ -386,7 +386,7 @@ TEST_F(Cli, FullStdoutIsStatus5) {
 }
 
 TEST_F(Cli, ReportThatCannotBeWrittenIsStatus5WithoutOutput) {
-    // cli.md: "on 1, 3, 5 there is no output"
+    // Statuses 1, 3 and 5 leave no output.
     ExpectError(Bake(Shape("catmark_cube"), "a.exr", {"--report", folder / "no/such/r.json"}), 5);
     EXPECT_TRUE(folder.List().empty());
 }

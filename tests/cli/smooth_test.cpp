@@ -136,7 +136,7 @@ TEST_F(CliSmooth, MeetsTheReferences) {
         std::string mesh;
         Words options;
         std::string reference;
-        double tolerance;  // surface.md 4
+        double tolerance;  // of the diagonal
     };
     std::vector<Case> cases;
     for (auto const& [mesh, levels] :
@@ -257,7 +257,7 @@ TEST_F(CliSmooth, ReportTellsOfEachLevel) {
     auto const found = Smooth(icosa, {"--levels", "3", "--width-factor", "0.15"});
     json const report = Report();
     ASSERT_EQ(report["levels"].size(), 3u);
-    // Vertices of an icosahedron's levels: 10 * 4^k + 2. Counts of surface.md 3.5: 2, 5, 10.
+    // Vertices of an icosahedron's levels: 10 * 4^k + 2. Counts of a reference: 2, 5, 10.
     int const counts[] = {2, 5, 10};
     for (size_t k = 0; k < 3; ++k) {
         json const& level = report["levels"][k];
@@ -449,7 +449,7 @@ TEST_F(CliSmooth, TilesHaveImagesOfTheirOwn) {
     }
 }
 
-// surface.md 3.1: critical sigma over the mean edge, on the grid of three levels.
+// [Cascade 7]: critical sigma over the mean edge, on the grid of three levels.
 TEST_F(CliSmooth, AWidthThatCollapsesIsRefusedWithTheCriticalOne) {
     struct Case {
         std::string mesh;

@@ -14,7 +14,7 @@ struct AuditReport {
     bool isWithin = true;  ///< every audited component keeps the bound
 };
 
-/// Checks finished files (bake.md, "Audits"): seams and the integral of Gaussian curvature.
+/// Checks finished files [Bake 8], [Bake 9]: seams and the integral of Gaussian curvature.
 ///
 /// \param bake   what Bake returned for the same scene and options
 /// \param bound  of the relative error of Gauss-Bonnet

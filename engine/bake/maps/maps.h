@@ -39,7 +39,7 @@ enum class Averaging { Plain, UnitVector, Line };
 
 enum class MapSpace { Object, Tangent, UV };
 
-/// One map of a bake: what is measured, and the channels it fills (bake.md, "Maps").
+/// One map of a bake: what is measured, and the channels it fills [Bake 5].
 struct Map {
     MapKind kind;
     std::string name;                   ///< as the user wrote it

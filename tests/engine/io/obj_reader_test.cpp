@@ -233,7 +233,7 @@ TEST(ObjReader, TagsMayStandBeforeWhatTheyName) {
 }
 
 TEST(ObjReader, BoundaryTagSetsTheBoundaryRule) {
-    // assets/README.md: 0 none, 1 edge and corner, 2 edge only
+    // The tag: 0 none, 1 edge and corner, 2 edge only.
     for (auto const& [value, rule] : {std::pair{0, Sdc::Options::VTX_BOUNDARY_NONE},
                                       {1, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER},
                                       {2, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY}}) {
@@ -244,8 +244,7 @@ TEST(ObjReader, BoundaryTagSetsTheBoundaryRule) {
 }
 
 TEST(ObjReader, FaceVaryingTagSetsTheFaceVaryingRule) {
-    // assets/README.md: 0 none, 1 corners only, 2 corners plus1, 3 corners plus2, 4 boundaries, 5
-    // all
+    // The tag: 0 none, 1 corners only, 2 corners plus1, 3 corners plus2, 4 boundaries, 5 all.
     Sdc::Options::FVarLinearInterpolation const rules[] = {
         Sdc::Options::FVAR_LINEAR_NONE,          Sdc::Options::FVAR_LINEAR_CORNERS_ONLY,
         Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1, Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2,

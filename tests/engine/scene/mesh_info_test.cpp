@@ -32,7 +32,7 @@ size_t CountDefects(MeshInfo const& info, std::string const& kind) {
     return defect ? defect->count : 0;
 }
 
-// -------- the tables of assets/README.md, measured by another program
+// -------- what another program measured of the assets
 
 struct Facts {
     std::string path;
@@ -229,8 +229,7 @@ TEST(MeshInfo, AssetsHaveTheCreasesOfTheTable) {
 }
 
 TEST(MeshInfo, HeadWithoutOverlapHasNoneAndTheWholeFaceHasSome) {
-    // assets/README.md: the skin alone has no overlap; left and right parts of the face share
-    // texture space.
+    // The skin alone has no overlap; left and right parts of the face share texture space.
     for (char const* path : {"control/ict_head_skin.obj", "control/ict_face_neutral.obj"}) {
         if (!test::HasAsset(path)) GTEST_SKIP() << "no " << test::AssetPath(path);
     }

@@ -25,7 +25,7 @@ using Points = std::vector<double>;
 
 // ---- sizes --------------------------------------------------------------------------------------
 
-// surface.md 3.1: sigma of the size of an edge is more than an icosahedron carries. Its radius
+// [Cascade 7]: sigma of the size of an edge is more than an icosahedron carries. Its radius
 // falls to these parts of the original, through shapes that stay similar: no angle says so, the
 // size does.
 TEST(CascadeFigures, BeyondTheCriticalWidthAnIcosahedronCollapsesByTheListedFigures) {
@@ -45,7 +45,7 @@ TEST(CascadeFigures, BeyondTheCriticalWidthAnIcosahedronCollapsesByTheListedFigu
     }
 }
 
-// surface.md 3.6: mean radius after 1, 2, 3 quarterings, and after 2, 4, 6 bisections.
+// [Cascade 10]: mean radius after 1, 2, 3 quarterings, and after 2, 4, 6 bisections.
 TEST(CascadeFigures, TwoBisectionsAreAboutAQuarteringByTheListedFigures) {
     auto const scene = LoadMesh("icosa");
     auto const halves = test::BisectLevels(scene, 6, BoundaryRule::Fixed);
@@ -129,7 +129,7 @@ void ExpectAngles(engine::Scene const& scene, double sigma, std::vector<double> 
     }
 }
 
-// surface.md 3.3 to the last digit that is listed: angle sums of 270 deg (c = 0.5) and 180 deg (c =
+// [Cascade 8], to the last digit of a reference: angle sums of 270 deg (c = 0.5) and 180 deg (c =
 // 1) last, that of 101 deg (c = 2) degenerates.
 TEST(CascadeFigures, ACornerOfValenceThreeHasTheListedAngles) {
     for (AngleSequence const& row : {AngleSequence{0.5, 0.1, {42.6, 38.5, 32.7, 30.3}},
@@ -206,7 +206,7 @@ TEST(CascadeFigures, ATipsSumOfAnglesDecidesByTheListedFigures) {
     ExpectAngles(MakeSharpBipyramid(3, 180), 0.1, {58.6, 54.1, 45.0, 33.2, 26.7, 23.8}, 0.05);
 }
 
-// surface.md 3.2, sigma = 0.3 mean edge.
+// [Cascade 4], sigma = 0.3 mean edge.
 TEST(CascadeFigures, ANaturalBoundaryDegeneratesByTheListedFiguresWhereAFixedOneStays) {
     auto const scene = LoadMesh("gridholetri");
     double const sigma = 0.3 * MeasureEdges(scene).mean;
@@ -235,7 +235,7 @@ TEST(CascadeFigures, ANaturalBoundarysFrozenMetricIsReportedAndNumbersStayFinite
 
 // ---- convergence to the exact cascade -----------------------------------------------------------
 
-/// surface.md 3.5 for sigma = 0.15 mean edge: differences from the exact cascade at level 4 of 4,
+/// [Cascade 5] for sigma = 0.15 mean edge: differences from the exact cascade at level 4 of 4,
 /// per coordinate and of the box; and iterations of the residual mode at levels 1 to 4, at that
 /// width and at twice of it. Negative: not listed.
 struct Convergence {
@@ -341,7 +341,7 @@ TEST(CascadeFigures, FewSweepsDifferFromTheExactCascadeByTheListedFigures) {
                      name + ", 4 gradients per level");
         double const eight = find(CascadeSolver::ConjugateGradients, 8, true);
         ExpectListed(eight, listed.fixedGradient[1], name + ", 8 gradients per level");
-        EXPECT_LT(eight, 1.5e-3) << "surface.md 4: " << name;
+        EXPECT_LT(eight, 1.5e-3) << name;
         ExpectListed(find(CascadeSolver::Jacobi, 8, true), listed.fixedJacobi,
                      name + ", 8 Jacobi per level");
     }
@@ -376,7 +376,7 @@ TEST(CascadeFigures, TheResidualModeTakesTheListedIterationsAndMeetsTheExactCasc
     }
 }
 
-// The icosahedron's counts of surface.md 3.5: 23, 8, 3, 1 for conjugate gradients; 64, 16, 4, 1 for
+// The icosahedron's counts [Cascade 5]: 23, 8, 3, 1 for conjugate gradients; 64, 16, 4, 1 for
 // Jacobi; bisection halves the exponents.
 TEST(CascadeFigures, SweepsAreCountedByTheAPrioriRule) {
     int const gradients[] = {23, 8, 3, 1}, jacobi[] = {64, 16, 4, 1}, halves[] = {8, 4, 2, 1},

@@ -103,7 +103,7 @@ TEST(Cascade, FixedBoundaryMeetsItsReference) {
               1e-8);
 }
 
-// Residual mode: surface.md 3.5 measured 2.5e-7 of the box at most.
+// Residual mode: a reference measured 2.5e-7 of the box at most.
 TEST(Cascade, ConjugateGradientsToAResidualAreNearTheExactOnes) {
     auto const scene = LoadMesh("icosa");
     auto const levels = QuarterLevels(scene, 4, BoundaryRule::Fixed);

@@ -111,7 +111,7 @@ TEST(LimitOperator, TakesThirtyEightBytesPerVertexAmongQuads) {
     EXPECT_LE(static_cast<double>(A.GetNumBytes()) / scene.cage.numVertices, 38.1);
 }
 
-// -------- the spectrum, surface.md 1.2
+// -------- the spectrum [Limit 5]
 
 double SmallestEigenvalue(engine::Scene const& scene, LimitOptions const& limit = {}) {
     auto const A = far_ext::LimitMatrix::Build(*far_ext::CreateRefiner(scene.cage), 0, limit);
@@ -216,7 +216,7 @@ int CountApplications(Interpolator const& interpolator, engine::Scene const& sce
     return low;
 }
 
-// The acceptance of surface.md 4: Chebyshev and conjugate gradients, noise of 0.1 edge.
+// What is accepted: Chebyshev and conjugate gradients, noise of 0.1 edge.
 TEST(Interpolator, NeedsNoMoreApplicationsThanTheTheorySays) {
     Row const rows[] = {{"quad torus 96", test::MakeTorus(12, 8), 25, 40},
                         {"quad torus 6144", test::MakeTorus(96, 64), 25, 40},

@@ -127,7 +127,7 @@ TEST(HodgeStars, AreTheRatiosOfDualToEdge) {
     EXPECT_NEAR(std::accumulate(grid.edge.begin(), grid.edge.end(), 0.0), 4 * 1.0 + 8 * 0.5, 1e-13);
 }
 
-// forms.md 8: each part has what was asked for and nothing of the others.
+// [Forms 8]: each part has what was asked for and nothing of the others.
 TEST(FieldDesigner, PartsHaveWhatWasAskedFor) {
     for (auto const& [name, scene, numHarmonics] : MakeCases()) {
         auto const refiner = test::MakeRefiner(scene, 0);
@@ -347,7 +347,7 @@ int FindFirstFan(Far::TopologyLevel const& level, Index vertex) {
     return 0;
 }
 
-/// Whether the limit of a 1-form exists at a vertex: forms.md 6, last paragraph. On a crease, that
+/// Whether the limit of a 1-form exists at a vertex [Forms 6]. On a crease, that
 /// of the fan from its first sharp spoke.
 bool HasLimit(Far::TopologyRefiner const& refiner, Far::TopologyLevel const& level, Index vertex) {
     int k = level.GetVertexFaces(vertex).size();
@@ -395,7 +395,7 @@ TEST(VertexCovectors, AreTheSameOnEveryLevel) {
                 EXPECT_LT((a.GetNormal() - b.GetNormal()).norm(), 1e-9)
                     << name << ", vertex " << vertex;
                 if (!far_ext::IsSmoothInterior(level, vertex)) continue;
-                // forms.md 7.2: both masks are left eigenvectors, of S0 and of S1, with the same
+                // [Forms 7.2]: both masks are left eigenvectors, of S0 and of S1, with the same
                 // eigenvalue.
                 double const c =
                     std::cos(2.0 * std::acos(-1.0) / level.GetVertexFaces(vertex).size());

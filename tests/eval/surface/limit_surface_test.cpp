@@ -22,7 +22,7 @@ namespace Bfr = OpenSubdiv::Bfr;
 using eval::FaceTree;
 using eval::LimitSurface;
 
-/// OpenSubdiv's own evaluator, isolated as deep as it goes: the slow reference of bake.md.
+/// OpenSubdiv's own evaluator, isolated as deep as it goes: the slow reference.
 class BfrReference {
 public:
     BfrReference(Far::TopologyRefiner const& refiner, std::vector<double> const& positions,
@@ -207,7 +207,7 @@ TEST_P(LimitSurfaceOnCage, CornersAreWhereRefinementLeads) {
     }
 }
 
-// -------- extraordinary vertices: the figures of bake.md
+// -------- extraordinary vertices [Limit 10]
 
 /// Mean curvature along the diagonal of the fan's first face at distances 2^-level.
 std::vector<double> MeanTowardsVertex(int valence, double cup, double saddle, int fromLevel,

@@ -349,7 +349,7 @@ TEST(CascadeLevel, RowsHaveTheirParentsAmongTheCoarserRows) {
     }
 }
 
-/// A mesh of surface.md 0: its faces, and its edges in their order.
+/// A mesh in the order of [Limit 1]: its faces, and its edges in their order.
 struct OrderedMesh {
     std::vector<std::vector<Index>> faces;
     std::vector<std::array<Index, 2>> edges;
@@ -372,7 +372,7 @@ OrderedMesh OrderBase(engine::Scene const& scene) {
     return mesh;
 }
 
-// surface.md 0, level after level: vertex points, face points (of quads and n-gons), edge points.
+// [Limit 1], level after level: vertex points, face points (of quads and n-gons), edge points.
 // Base edges by first appearance along the faces; refined ones first within each parent face, (face
 // point, edge point i) of quads and (e0, e2), (e1, e0), (e2, e1) of triangles, then (m, a), (m, b)
 // of each parent edge.

@@ -64,7 +64,7 @@ void CheckLaws(Step const& step, std::string const& name) {
     EXPECT_GE(smallest, 0.0) << name;
 }
 
-// The laws of forms.md 2: S1 commutes with S0 and S2; nothing of a 2-form is lost; no weight is
+// The laws of [Forms 2]: S1 commutes with S0 and S2; nothing of a 2-form is lost; no weight is
 // negative.
 TEST(FormStencils, CommuteOnEveryKindOfMesh) {
     for (auto& [name, scene] : test::MakeFormMeshes()) {
@@ -139,7 +139,7 @@ TEST(FormStencils, KeepAConstantDensity) {
     }
 }
 
-// Rows worked out by hand: forms.md 10.
+// Rows worked out by hand [Forms 11].
 TEST(FormStencils, MatchTheReferenceRowsOfTheTetrahedron) {
     auto const refiner = test::MakeRefiner(test::MakeTetrahedron(), 1);
     auto const coarse = refiner->GetLevel(0), fine = refiner->GetLevel(1);
@@ -236,7 +236,7 @@ std::map<std::pair<Place, Place>, double> RowBetween(engine::Scene const& scene,
     return row;
 }
 
-// forms.md 4: (1,3)/8 along and (1,6,1)/8 across on mesh lines, (1,3)/8 and (1,1)/2 inside faces.
+// [Forms 4]: (1,3)/8 along and (1,6,1)/8 across on mesh lines, (1,3)/8 and (1,1)/2 inside faces.
 TEST(FormStencils, AreATensorProductAmongQuads) {
     auto const scene = test::MakeLattice(8, 8, Sdc::SCHEME_CATMARK);
     auto const even = RowBetween(scene, {4, 4}, {4.5, 4});
@@ -256,7 +256,7 @@ TEST(FormStencils, AreATensorProductAmongQuads) {
     }
 }
 
-// forms.md 3.5, the stencils of valence 6.
+// [Forms 3.5], the stencils of valence 6.
 TEST(FormStencils, MatchTheRegularStencilsOfLoop) {
     auto const scene = test::MakeLattice(8, 8, Sdc::SCHEME_LOOP);
     Place const v{4, 4};
