@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "engine/cli/console.h"
 #include "engine/io/file.h"
 #include "engine/scene/job.h"
 #include "engine/scene/scene.h"
@@ -62,6 +63,7 @@ public:
 
 private:
     CommonOptions const& _common;
+    Console _console;
     engine::Job _job;
     nlohmann::json _report;
     std::unique_ptr<engine::AtomicFile> _reportFile;

@@ -14,7 +14,6 @@
 
 namespace limn::cli {
 
-using engine::Job;
 using engine::Scene;
 
 std::string GetVersion() {
@@ -23,11 +22,11 @@ std::string GetVersion() {
 
 namespace {
 
-Job::Progress ChooseProgress(CommonOptions const& common) {
-    if (common.isQuiet || common.progress == "none") return Job::Progress::None;
-    if (common.progress == "bar") return Job::Progress::Bar;
-    if (common.progress == "lines") return Job::Progress::Lines;
-    return ::isatty(STDERR_FILENO) ? Job::Progress::Bar : Job::Progress::Lines;
+Console::Style ChooseStyle(CommonOptions const& common) {
+    if (common.isQuiet || common.progress == "none") return Console::Style::None;
+    if (common.progress == "bar") return Console::Style::Bar;
+    if (common.progress == "lines") return Console::Style::Lines;
+    return ::isatty(STDERR_FILENO) ? Console::Style::Bar : Console::Style::Lines;
 }
 
 void ApplyOptions(CommonOptions const& common, Scene& scene) {
@@ -46,7 +45,8 @@ void ApplyOptions(CommonOptions const& common, Scene& scene) {
 Context::Context(CommonOptions const& common, std::string command,
                  std::vector<std::string> arguments)
     : _common(common),
-      _job(ChooseProgress(common), common.isQuiet),
+      _console(ChooseStyle(common), common.isQuiet),
+      _job(_console.MakeHost()),
       _start(std::chrono::steady_clock::now()) {
     // Opened before the work, so that a report that cannot be written is known before there is
     // output.

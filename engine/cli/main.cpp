@@ -9,6 +9,7 @@
 #include <tbb/task_arena.h>
 
 #include "engine/cli/cli.h"
+#include "engine/cli/signals.h"
 #include "far_ext/error.h"
 
 namespace {
@@ -110,15 +111,15 @@ int main(int argc, char** argv) {
         return Fail(2, fmt::format("{} (limn VERB --help tells more)", error.what()));
     }
 
-    limn::engine::InstallSignalHandlers();
+    InstallSignalHandlers();
     try {
         std::vector<std::string> const arguments(argv + 1, argv + argc);
         for (auto const& verb : verbs) {
             if (verb.app->parsed()) return Run(verb, common, arguments);
         }
         return 2;
-    } catch (limn::engine::Interrupted const& interrupt) {
-        return Fail(128 + interrupt.signal, "interrupted; nothing half-written is left");
+    } catch (limn::engine::Stopped const&) {
+        return Fail(128 + GetSignal(), "interrupted; nothing half-written is left");
     } catch (Error const& error) {
         return Fail(ToExitStatus(error.GetCode()), error.what());
     } catch (std::bad_alloc const&) {

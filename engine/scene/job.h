@@ -10,48 +10,75 @@
 
 namespace limn::engine {
 
-/// Thrown where work stops because a signal asked for it. Not an Error: nothing was wrong.
-struct Interrupted {
-    int signal;
+/// Thrown where work stops because its host asked for it. Not an Error: nothing was wrong.
+struct Stopped {};
+
+/// How far the present phase of a job is.
+struct Progress {
+    std::string phase;           ///< what is done, e.g. "baking spot"
+    size_t done = 0, total = 0;  ///< steps
+    bool isFinished = false;     ///< told once, as the last of a phase, with done == total
 };
 
-/// Makes SIGINT and SIGTERM stop the work at its next CheckInterrupted. A second signal ends the
-/// process at once.
-void InstallSignalHandlers();
+/// What the host of a job hears and says; each may be empty. Hearing happens on whichever thread
+/// of the work has something to tell, one call at a time; it must not call the job. What a callback
+/// throws ends the work and comes unchanged out of the function that was given the job.
+struct JobHost {
+    /// The start (done == 0) and the end of each phase, and at most 20 times a second between.
+    std::function<void(Progress const&)> onProgress{};
+    std::function<void(std::string const&)> onWarning{};
+    /// Asked often and from many threads at once: a look at an atomic flag.
+    std::function<bool()> isStopped{};
+};
 
-/// \throws Interrupted  once a signal has come
-void CheckInterrupted();
-
-/// What a running job tells its user: progress and warnings. Safe to use from many threads.
+/// One piece of work and its host: progress, warnings, and the wish to stop. Nothing is shared
+/// between jobs. One without a host is silent and never stops. Safe to use from many threads.
 class Job {
 public:
-    enum class Progress { None, Lines, Bar };
-
     Job() = default;
-    Job(Progress progress, bool isQuiet) : _progress(progress), _isQuiet(isQuiet) {}
+    explicit Job(JobHost host) : _host(std::move(host)) {}
 
-    /// Starts a phase of `total` steps; the line on the terminal shows `what`, its share and the
-    /// time left.
-    void Start(std::string what, size_t total);
+    /// Starts a phase of `total` steps. One phase at a time.
+    void Start(std::string phase, size_t total);
     void Advance(size_t steps = 1);
     void Finish();
 
-    /// Shown at once on stderr (unless quiet) and kept for the report.
+    /// Told to the host at once and kept for the report.
     void Warn(std::string const& message);
     std::vector<std::string> GetWarnings() const;
 
-private:
-    void Show(size_t done, bool isLast);
+    /// \throws Stopped  once the host has asked for it
+    void CheckStopped() const {
+        if (_host.isStopped && _host.isStopped()) throw Stopped{};
+    }
 
-    Progress _progress = Progress::None;
-    bool _isQuiet = true;
-    std::string _what;
+private:
+    using Clock = std::chrono::steady_clock;
+
+    void Tell(size_t done, bool isFinished);
+
+    JobHost const _host;
+
+    /// Held while the host hears, so that it hears one thing at a time.
+    std::mutex _hostMutex;
+    std::string _phase;
     size_t _total = 0;
     std::atomic<size_t> _done{0};
-    std::chrono::steady_clock::time_point _start, _lastShown;
-    mutable std::mutex _mutex;
+    std::atomic<Clock::rep> _nextTold{0};  ///< when Advance tells again
+
+    /// Apart from the host's: GetWarnings never waits for a host that is hearing something.
+    mutable std::mutex _warningsMutex;
     std::vector<std::string> _warnings;
-    bool _isLineOpen = false;
 };
+
+// ---- For callers that are not given a job yet; goes when the last of them is.
+
+using Interrupted = Stopped;
+
+/// What CheckInterrupted asks, for the whole process; null for nothing.
+void SetInterruptPoll(bool (*poll)());
+
+/// \throws Stopped  once the process's poll says so
+void CheckInterrupted();
 
 }  // namespace limn::engine

@@ -73,6 +73,10 @@ void ValidateTags(ControlMesh const& mesh) {
     auto const isVertex = [&](Index v) { return v >= 0 && v < mesh.numVertices; };
     auto const isSharpness = [](float s) { return s >= 0.0f; };  // false for NaN too
 
+    if (mesh.creaseVertexPairs.size() != 2 * mesh.creaseSharpness.size() ||
+        mesh.cornerVertices.size() != mesh.cornerSharpness.size()) {
+        Refuse(ErrorCode::BadMesh, "creases and corners need one sharpness each");
+    }
     for (size_t i = 0; i < mesh.creaseSharpness.size(); ++i) {
         Index const a = mesh.creaseVertexPairs[2 * i], b = mesh.creaseVertexPairs[2 * i + 1];
         if (!isVertex(a) || !isVertex(b) || !isSharpness(mesh.creaseSharpness[i])) {
@@ -104,6 +108,7 @@ void ValidateTags(ControlMesh const& mesh) {
 
 void Validate(ControlMesh const& mesh) {
     if (mesh.faceSizes.empty()) Refuse(ErrorCode::BadMesh, "the mesh has no faces");
+    if (mesh.numVertices < 1) Refuse(ErrorCode::BadMesh, "the mesh has no vertices");
     ValidateFaces(mesh);
     ValidateTags(mesh);
     for (FVarChannel const& channel : mesh.fvarChannels) {

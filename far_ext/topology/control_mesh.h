@@ -46,10 +46,11 @@ struct ControlMesh {
 
 /// Refuses what OpenSubdiv would read out of bounds or cannot hold.
 ///
-/// \throws Error  BadMesh: a face with fewer than 3 corners, an index outside its range, a crease
-///                or corner sharpness that is negative or not a number, the Loop scheme on a face
-///                that is not a triangle.  TooLarge: more than 65535 corners in a face or faces
-///                and edges at a vertex (OpenSubdiv's valence limit)
+/// \throws Error  BadMesh: no faces or vertices, a face with fewer than 3 corners, an index outside
+///                its range, a crease or corner without a sharpness or with one that is negative or
+///                not a number, the Loop scheme on a face that is not a triangle.  TooLarge: more
+///                than 65535 corners in a face or faces and edges at a vertex (OpenSubdiv's valence
+///                limit)
 void Validate(ControlMesh const& mesh);
 
 }  // namespace limn::far_ext

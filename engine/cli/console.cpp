@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/cli/console.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "engine/cli/signals.h"
+
+namespace limn::cli {
+
+using engine::Progress;
+
+engine::JobHost Console::MakeHost() {
+    engine::JobHost host{.isStopped = [] { return GetSignal() != 0; }};
+    if (_style != Style::None) {
+        host.onProgress = [this](Progress const& progress) { OnProgress(progress); };
+    }
+    if (!_isQuiet) host.onWarning = [this](std::string const& message) { OnWarning(message); };
+    return host;
+}
+
+void Console::OnProgress(Progress const& progress) {
+    auto const now = Clock::now();
+    if (progress.isFinished) {
+        bool const isShort = now - _start < std::chrono::milliseconds(500);
+        if (_isLineOpen || !isShort) Show(progress);
+        return;
+    }
+    if (progress.done == 0) {
+        _start = _lastShown = now;
+        return;
+    }
+    auto const pause =
+        _style == Style::Bar ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000);
+    if (now - _lastShown < pause) return;
+    _lastShown = now;
+    Show(progress);
+}
+
+void Console::Show(Progress const& progress) {
+    double const share = progress.total ? std::min(1.0, static_cast<double>(progress.done) /
+                                                            static_cast<double>(progress.total))
+                                        : 1.0;
+    std::chrono::duration<double> const elapsed = Clock::now() - _start;
+    std::string const time =
+        progress.isFinished ? fmt::format("{:.1f} s", elapsed.count())
+        : share > 0.0       ? fmt::format("{:.0f} s left", elapsed.count() * (1 - share) / share)
+                            : std::string("starting");
+    if (_style == Style::Lines) {
+        fmt::print(stderr, "limn: {}: {:.0f} %, {}\n", progress.phase, 100 * share, time);
+        return;
+    }
+    int const filled = static_cast<int>(share * 30);
+    fmt::print(stderr, "\r{} [{:=<{}}{: <{}}] {:3.0f} %  {}   ", progress.phase, "", filled, "",
+               30 - filled, 100 * share, time);
+    _isLineOpen = !progress.isFinished;
+    if (progress.isFinished) fmt::print(stderr, "\n");
+    std::fflush(stderr);
+}
+
+void Console::OnWarning(std::string const& message) {
+    if (_isLineOpen) fmt::print(stderr, "\n");
+    _isLineOpen = false;
+    fmt::print(stderr, "limn: warning: {}\n", message);
+}
+
+}  // namespace limn::cli

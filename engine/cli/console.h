@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "engine/scene/job.h"
+
+namespace limn::cli {
+
+/// The terminal as a job's host: progress and warnings on stderr, as they come.
+class Console {
+public:
+    enum class Style { None, Lines, Bar };
+
+    Console(Style style, bool isQuiet) : _style(style), _isQuiet(isQuiet) {}
+    Console(Console const&) = delete;
+    Console& operator=(Console const&) = delete;
+
+    /// Hears for one job, which must not outlive it; stops it once a signal has come.
+    engine::JobHost MakeHost();
+
+private:
+    using Clock = std::chrono::steady_clock;
+
+    void OnProgress(engine::Progress const& progress);
+    void OnWarning(std::string const& message);
+    void Show(engine::Progress const& progress);
+
+    Style _style;
+    bool _isQuiet;
+    Clock::time_point _start, _lastShown;
+    bool _isLineOpen = false;
+};
+
+}  // namespace limn::cli

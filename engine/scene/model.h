@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <opensubdiv/far/topologyLevel.h>
+#include <opensubdiv/far/topologyRefiner.h>
+
+#include "engine/scene/scene.h"
+
+namespace limn::engine {
+
+/// A mesh as functions take it: a scene that has been checked, with its topology built. Parts that
+/// belong together cannot come apart, and none of it ever changes: copies share it all, and threads
+/// may read it at once.
+class Model {
+public:
+    /// Checks a scene and builds its topology. One from arrays fills `cage` and `positions`, and
+    /// what else it has; without a path it goes by its name.
+    ///
+    /// \throws Error  what far_ext::Validate and far_ext::CreateRefiner refuse; BadMesh: values,
+    ///                UVs, primvars or groups of another count than vertices, corners or faces ask
+    ///                for, or positions or UVs that are not finite. Messages begin with "PATH: "
+    static Model Build(Scene scene);
+
+    /// The same mesh with other positions: topology, refiner, UVs and all the rest are shared.
+    ///
+    /// \param positions  3 per vertex
+    /// \param sha256     what GetSha256 is to be from now on
+    /// \throws Error     BadMesh as Build does
+    Model WithPoints(std::vector<double> positions, std::string sha256 = {}) const;
+
+    /// A scene to change or to write: a copy of everything.
+    Scene MakeScene() const;
+
+    std::string const& GetPath() const { return _parts->scene.path; }
+    std::string const& GetName() const { return _parts->scene.name; }
+    std::string const& GetSha256() const { return _points->sha256; }
+
+    far_ext::ControlMesh const& GetCage() const { return _parts->scene.cage; }
+    std::vector<double> const& GetPositions() const { return _points->positions; }
+    bool HasUVs() const { return _parts->scene.HasUVs(); }
+    std::vector<double> const& GetUVs() const { return _parts->scene.uvs; }
+    std::vector<Primvar> const& GetPrimvars() const { return _parts->scene.primvars; }
+    std::array<FaceGroups, 3> const& GetGroups() const { return _parts->scene.groups; }
+    std::vector<uint32_t> const& GetFaceLines() const { return _parts->scene.faceLines; }
+
+    /// The unrefined topology; its base level.
+    Far::TopologyRefiner const& GetRefiner() const { return *_parts->refiner; }
+    Far::TopologyLevel const& GetLevel() const { return _parts->refiner->GetLevel(0); }
+
+    /// As Scene's, ListGroups and SelectGroups.
+    std::string NameFace(Index face) const { return _parts->scene.NameFace(face); }
+    std::vector<std::string> ListGroups() const { return engine::ListGroups(_parts->scene); }
+    std::vector<char> SelectGroups(std::vector<std::string> const& names) const {
+        return engine::SelectGroups(_parts->scene, names);
+    }
+
+private:
+    /// What models that differ in their positions share.
+    struct Parts {
+        Scene scene;  ///< all but positions and sha256, which are empty here
+        std::unique_ptr<Far::TopologyRefiner const> refiner;
+    };
+    struct Points {
+        std::vector<double> positions;
+        std::string sha256;
+    };
+
+    Model(std::shared_ptr<Parts const> parts, std::shared_ptr<Points const> points)
+        : _parts(std::move(parts)), _points(std::move(points)) {}
+
+    std::shared_ptr<Parts const> _parts;
+    std::shared_ptr<Points const> _points;
+};
+
+}  // namespace limn::engine
