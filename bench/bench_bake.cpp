@@ -10,7 +10,6 @@
 
 #include "engine/bake/bake.h"
 #include "engine/io/mesh_reader.h"
-#include "far_ext/topology/refiner.h"
 #include "harness.h"
 #include "peers/maketx.h"
 #include "peers/openexr_tiles.h"
@@ -23,18 +22,16 @@ namespace {
 constexpr int kSize = 4096;
 
 void BakeFile(std::string const& mesh, std::string const& output, bool hasMips) {
-    engine::Scene const scene = engine::ReadMesh(mesh);
-    far_ext::Validate(scene.cage);
-    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    auto const model = engine::Model::Build(engine::ReadMesh(mesh));
     engine::BakeOptions options;
     options.pattern = output;
-    options.maps.names = {"normal"};
+    options.maps = {"normal"};
     options.width = options.height = kSize;
     options.tiles = {1001};
     options.isHalf = true;
     options.hasMips = hasMips;
     engine::Job job;
-    engine::Bake(scene, *refiner, nullptr, options, job);
+    engine::Bake(model, options, job);
 }
 
 /// limn's writer alone: pixels in memory to a file.

@@ -19,9 +19,12 @@ namespace {
 struct Case {
     engine::Scene scene;
     std::unique_ptr<Far::TopologyRefiner> refiner;
+    engine::Model model;
 
     explicit Case(engine::Scene made)
-        : scene(std::move(made)), refiner(far_ext::CreateRefiner(scene.cage)) {}
+        : scene(std::move(made)),
+          refiner(far_ext::CreateRefiner(scene.cage)),
+          model(engine::Model::Build(scene)) {}
 };
 
 struct Image {
@@ -34,12 +37,12 @@ struct Image {
 engine::BakeReport BakeImage(Case const& subject, Image const& image, std::string const& path) {
     engine::BakeOptions options;
     options.pattern = path;
-    options.maps.names = {image.map};
+    options.maps = {image.map};
     options.width = options.height = image.size;
     options.isHalf = image.isHalf;
     options.compression = image.compression;
     engine::Job job;
-    return engine::Bake(subject.scene, *subject.refiner, nullptr, options, job);
+    return engine::Bake(subject.model, options, job);
 }
 
 /// Surface from the topology on, then four samples in every face.

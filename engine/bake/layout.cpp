@@ -7,18 +7,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "engine/images/udim.h"
 #include "engine/scene/subdivision_names.h"
 
 namespace limn::engine {
 
 namespace {
-
-void ReplaceAll(std::string& text, std::string const& token, std::string const& value) {
-    for (size_t at = text.find(token); at != std::string::npos;
-         at = text.find(token, at + value.size())) {
-        text.replace(at, token.size(), value);
-    }
-}
 
 /// A map's name where it becomes part of a path or of a channel's name.
 std::string AsFileName(std::string name) {
@@ -28,42 +22,38 @@ std::string AsFileName(std::string name) {
 
 }  // namespace
 
-bool HasUdimToken(std::string const& pattern) {
-    return pattern.find("<UDIM>") != std::string::npos ||
-           pattern.find("{udim}") != std::string::npos;
-}
-
 std::string ExpandPattern(std::string const& pattern, std::string const& map,
                           std::string const& mesh, int tile) {
-    std::string path = pattern;
-    ReplaceAll(path, "{map}", AsFileName(map));
-    ReplaceAll(path, "{mesh}", mesh);
-    ReplaceAll(path, "<UDIM>", std::to_string(tile));
-    ReplaceAll(path, "{udim}", std::to_string(tile));
-    return path;
+    std::string const named = ReplaceAll(pattern, "{map}", AsFileName(map));
+    return ReplaceUdimToken(ReplaceAll(named, "{mesh}", mesh), tile);
 }
 
-std::vector<FileLayout> LayOutFiles(std::vector<Map> const& maps, std::string const& pattern,
-                                    bool hasCoverage) {
+std::vector<FileLayout> LayOutFiles(std::vector<std::unique_ptr<Map>> const& maps,
+                                    std::string const& pattern, bool hasCoverage) {
     bool const hasMapToken = pattern.find("{map}") != std::string::npos;
     std::vector<FileLayout> files;
     int numPlanes = 0;
-    for (Map const& map : maps) {
+    for (auto const& map : maps) {
+        MapTraits const& traits = map->GetTraits();
         if (files.empty() || hasMapToken) {
             files.emplace_back();
             files.back().firstPlane = numPlanes;
         }
         FileLayout& file = files.back();
-        file.maps.push_back(map);
-        file.groups.push_back({file.numPlanes, map.GetNumChannels(), map.averaging});
-        file.numPlanes += map.GetNumChannels();
-        numPlanes += map.GetNumChannels();
+        for (ChannelGroup group : traits.GetGroups()) {
+            group.first += file.numPlanes;
+            file.groups.push_back(group);
+        }
+        file.maps.push_back(traits);
+        file.numPlanes += traits.GetNumChannels();
+        numPlanes += traits.GetNumChannels();
     }
     for (FileLayout& file : files) {
-        for (Map const& map : file.maps) {
+        for (MapTraits const& map : file.maps) {
             std::string const layer = file.maps.size() > 1 ? AsFileName(map.name) + "." : "";
-            for (std::string const& channel : map.channels)
+            for (std::string const& channel : map.channels) {
                 file.channelNames.push_back(layer + channel);
+            }
             file.mapName += (file.mapName.empty() ? "" : "+") + map.name;
         }
         if (hasCoverage) file.channelNames.push_back("coverage");
@@ -71,64 +61,49 @@ std::vector<FileLayout> LayOutFiles(std::vector<Map> const& maps, std::string co
     return files;
 }
 
-std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, Scene const& scene) {
+std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, Model const& model) {
     std::string text = fmt::format(
         "size={}x{} samples={} padding={} type={} compression={} mip={} coverage={}", options.width,
         options.height, options.samplesPerSide, options.padding, options.isHalf ? "half" : "float",
         GetName(options.compression), options.hasMips, options.hasCoverage);
-    text += fmt::format(" {} orientation={}", DescribeSubdivision(scene.cage),
+    text += fmt::format(" {} orientation={}", DescribeSubdivision(model.GetCage()),
                         options.isLeftHanded ? "left" : "right");
     if (!options.groups.empty()) {
         std::set<std::string> const groups(options.groups.begin(), options.groups.end());
         text += fmt::format(" groups={}", fmt::join(groups, ","));
     }
-    if (options.maps.hasEncoding) {
-        text += fmt::format(" encode={},{}", options.maps.encodeScale, options.maps.encodeOffset);
+    if (options.encoding) {
+        text += fmt::format(" encode={},{}", options.encoding->scale, options.encoding->offset);
     }
-    auto const has = [&](MapKind kind) {
-        return std::any_of(file.maps.begin(), file.maps.end(),
-                           [&](Map const& map) { return map.kind == kind; });
-    };
-    if (has(MapKind::Bands)) text += fmt::format(" bands={}", options.maps.numBands);
-    if (has(MapKind::Noise)) {
-        text += fmt::format(" octaves={} frequency={} gain={} seed={} normalize={} ramp={}",
-                            options.noise.octaves, options.noise.frequency, options.noise.gain,
-                            options.noise.seed, options.maps.isNormalized,
-                            options.maps.ramp ? options.maps.ramp->GetText() : "none");
+    for (MapTraits const& map : file.maps) {
+        if (!map.optionText.empty()) text += " " + map.optionText;
     }
-    if (has(MapKind::Field)) {
-        text += fmt::format(" field={} flow={} normalize={}", options.fieldHash,
-                            options.maps.space == MapSpace::UV ? "uv" : "object",
-                            options.maps.isNormalized);
-    }
-    if (has(MapKind::Displacement) || has(MapKind::Bands)) {
-        text += fmt::format(" vector={} space={}", options.maps.isVector,
-                            options.maps.space == MapSpace::Tangent ? "tangent" : "object");
+    if (std::any_of(file.maps.begin(), file.maps.end(),
+                    [](MapTraits const& map) { return map.hasVectorOptions; })) {
+        text += fmt::format(" vector={} space={}", options.isVector,
+                            options.space == VectorSpace::Tangent ? "tangent" : "object");
     }
     return text;
 }
 
-std::vector<std::pair<std::string, std::string>> MakeAttributes(BakeOptions const& options,
-                                                                FileLayout const& file,
-                                                                Scene const& scene,
-                                                                Scene const* other) {
+Attributes MakeAttributes(BakeOptions const& options, FileLayout const& file, Model const& model) {
     std::string units;
-    for (Map const& map : file.maps) {
+    for (MapTraits const& map : file.maps) {
         units +=
             (units.empty() ? "" : "; ") + (file.maps.size() > 1 ? map.name + " " : "") + map.units;
     }
-    std::vector<std::pair<std::string, std::string>> attributes{
+    Attributes attributes{
         {"limn:convention",
          "sphere of radius r, seen from outside: k1 = k2 = +1/r; object space; v up"},
-        {"limn:input", scene.sha256},
+        {"limn:input", model.GetSha256()},
         {"limn:map", file.mapName},
-        {"limn:options", MakeOptionText(options, file, scene)},
+        {"limn:options", MakeOptionText(options, file, model)},
         {"limn:units", units},
         {"limn:version", options.version}};
-    if (other) attributes.emplace_back("limn:against", other->sha256);
-    if (options.maps.hasEncoding) {
-        attributes.emplace_back("limn:scale", fmt::format("{}", options.maps.encodeScale));
-        attributes.emplace_back("limn:offset", fmt::format("{}", options.maps.encodeOffset));
+    if (options.against) attributes.emplace_back("limn:against", options.against->GetSha256());
+    if (options.encoding) {
+        attributes.emplace_back("limn:scale", fmt::format("{}", options.encoding->scale));
+        attributes.emplace_back("limn:offset", fmt::format("{}", options.encoding->offset));
     }
     if (options.hasMips) {  // what texture systems look for before they trust a file's levels
         attributes.emplace_back("textureformat", "Plain Texture");
@@ -137,10 +112,9 @@ std::vector<std::pair<std::string, std::string>> MakeAttributes(BakeOptions cons
     return attributes;
 }
 
-bool IsUpToDate(std::string const& path,
-                std::vector<std::pair<std::string, std::string>> const& attributes) {
+bool IsUpToDate(std::string const& path, Attributes const& attributes) {
     auto existing = ReadExrAttributes(path, "limn:");
-    std::vector<std::pair<std::string, std::string>> wanted;
+    Attributes wanted;
     for (auto const& attribute : attributes) {
         if (attribute.first.starts_with("limn:")) wanted.push_back(attribute);
     }

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "engine/bake/bake.h"
-#include "engine/bake/mip_chain.h"
+#include "engine/bake/maps/map.h"
 
 namespace limn::engine {
 
-/// The channels of one output file: a run of the bake's planes, plus perhaps coverage.
+/// The channels of one output: a run of the bake's planes, plus perhaps coverage.
 struct FileLayout {
-    std::vector<Map> maps;
+    std::vector<MapTraits> maps;
     std::string mapName;  ///< for the {map} token and the report: "mean", or "mean+normal"
     int firstPlane = 0, numPlanes = 0;
     std::vector<std::string> channelNames;  ///< EXR names; coverage last
@@ -20,22 +20,21 @@ struct FileLayout {
 };
 
 /// One file per map where the pattern has {map}, else one file with a layer per map.
-std::vector<FileLayout> LayOutFiles(std::vector<Map> const& maps, std::string const& pattern,
-                                    bool hasCoverage);
+std::vector<FileLayout> LayOutFiles(std::vector<std::unique_ptr<Map>> const& maps,
+                                    std::string const& pattern, bool hasCoverage);
+
+/// `pattern` with its tokens replaced. \param map  may be empty where the pattern has no {map}
+std::string ExpandPattern(std::string const& pattern, std::string const& map,
+                          std::string const& mesh, int tile);
 
 /// The options that decide pixels, in canonical form: what makes two runs' files equal.
-std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, Scene const& scene);
+std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, Model const& model);
 
-/// Header attributes of a file, [Bake 7].
-std::vector<std::pair<std::string, std::string>> MakeAttributes(BakeOptions const& options,
-                                                                FileLayout const& file,
-                                                                Scene const& scene,
-                                                                Scene const* other);
+/// Header attributes of a file [Bake 7].
+using Attributes = std::vector<std::pair<std::string, std::string>>;
+Attributes MakeAttributes(BakeOptions const& options, FileLayout const& file, Model const& model);
 
 /// True if `path` is a file this bake would write again with the same content.
-bool IsUpToDate(std::string const& path,
-                std::vector<std::pair<std::string, std::string>> const& attributes);
-
-bool HasUdimToken(std::string const& pattern);
+bool IsUpToDate(std::string const& path, Attributes const& attributes);
 
 }  // namespace limn::engine

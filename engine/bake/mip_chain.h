@@ -2,19 +2,14 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
 
-#include "engine/bake/maps/maps.h"
+#include "engine/bake/channel_group.h"
 
 namespace limn::engine {
-
-/// How a run of channels is averaged.
-struct ChannelGroup {
-    int first = 0, count = 1;
-    Averaging averaging = Averaging::Plain;
-};
 
 /// One row of texels of all channels, as it lies in somebody's memory: values, and how much of each
 /// texel is covered (0 for padding and for nothing) and whether it holds anything at all.

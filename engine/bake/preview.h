@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <string>
+#include <array>
 #include <vector>
 
-#include "engine/bake/maps/maps.h"
+#include "engine/bake/maps/map.h"
 #include "engine/bake/mip_chain.h"
+#include "engine/images/picture.h"
 
 namespace limn::engine {
 
@@ -15,28 +15,33 @@ namespace limn::engine {
 class PreviewBuilder {
 public:
     /// \param firstChannel  of the map within the rows given to Add
-    PreviewBuilder(Map const& map, int firstChannel, int width, int height);
+    /// \param zero          what 0 is written as: the offset of an encoding
+    PreviewBuilder(RangeKind range, int numChannels, int firstChannel, int width, int height,
+                   float zero = 0.0f);
 
     void Add(int row, TexelRowView const& texels);
 
-    /// An RGB picture, 8 bits a channel.
-    struct Picture {
-        int width = 0, height = 0;
-        std::vector<uint8_t> pixels;
-    };
-    /// A field in texture space is drawn as streaks along it.
+    /// A flow is drawn as streaks along it.
     Picture Draw() const;
 
 private:
-    Picture DrawFlow() const;
+    /// Limits between which each component is shown.
+    struct Limits {
+        std::array<float, 3> low{}, high{};
+    };
 
-    Map _map;
-    int _firstChannel, _factor, _width, _height, _sourceWidth;
+    bool IsColour() const;
+    float GetMean(int channel, size_t texel) const;
+    Limits FindLimits() const;
+    Picture DrawFlow() const;
+    void DrawLegend(Limits const& limits, Picture& picture) const;
+    Colour ToColour(float share) const;
+
+    RangeKind _range;
+    int _numChannels, _firstChannel, _factor, _width, _height, _sourceWidth;
+    float _zero;
     std::vector<float> _sums;  // [channel][texel]
     std::vector<float> _weights;
 };
-
-/// Writes a picture as PNG, complete or not at all. \throws Error Io
-void WritePng(std::string const& path, PreviewBuilder::Picture const& picture);
 
 }  // namespace limn::engine

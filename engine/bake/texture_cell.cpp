@@ -6,7 +6,7 @@
 
 namespace limn::engine {
 
-TextureCell::Strip::Strip(double slope, double ofRow, double most) : perRow(ofRow), limit(most) {
+TextureCell::Slab::Slab(double slope, double ofRow, double most) : perRow(ofRow), limit(most) {
     isFlat = std::abs(slope) < 1e-12;
     if (isFlat) return;
     width = most / std::abs(slope);
@@ -34,8 +34,8 @@ TextureCell::TextureCell(TexturePiece const& piece, double x, double y, double h
         // d(x,y) = inverse * d(u,v) must stay within the cell, give or take the stray.
         double const limitX = half + strayX * std::abs(inverse[0]) + strayY * std::abs(inverse[1]);
         double const limitY = half + strayX * std::abs(inverse[2]) + strayY * std::abs(inverse[3]);
-        _strips[0] = Strip(inverse[0], inverse[1], limitX);
-        _strips[1] = Strip(inverse[2], inverse[3], limitY);
+        _slabs[0] = Slab(inverse[0], inverse[1], limitX);
+        _slabs[1] = Slab(inverse[2], inverse[3], limitY);
         reach = std::min(std::max(limitX, limitY), 2.0 * half);
         double const second = 2.0 * std::hypot(piece.GetStray(0, 1.0), piece.GetStray(1, 1.0));
         bend = second * size / (det * det);  // |inverse|^2 <= size / det^2
@@ -63,10 +63,10 @@ TextureCell::TextureCell(TexturePiece const& piece, double x, double y, double h
 std::array<double, 2> TextureCell::FindColumns(int row) const {
     double const dy = row - _middleY;
     double from = -_reachX, to = _reachX;
-    for (Strip const& strip : _strips) {
-        if (strip.isFlat && std::abs(strip.perRow * dy) > strip.limit) return {0.0, -1.0};
-        from = std::max(from, strip.shift * dy - strip.width);
-        to = std::min(to, strip.shift * dy + strip.width);
+    for (Slab const& slab : _slabs) {
+        if (slab.isFlat && std::abs(slab.perRow * dy) > slab.limit) return {0.0, -1.0};
+        from = std::max(from, slab.shift * dy - slab.width);
+        to = std::min(to, slab.shift * dy + slab.width);
     }
     return {_middleX + from, _middleX + to};
 }

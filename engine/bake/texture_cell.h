@@ -28,17 +28,17 @@ public:
 private:
     /// Where |slope * dx + perRow * dy| <= limit: |dx - shift * dy| <= width. Without a slope:
     /// 1e300.
-    struct Strip {
+    struct Slab {
         double width = 1e300, shift = 0.0;
         bool isFlat = false;  // no slope: a bound on dy alone
         double perRow = 0.0, limit = 0.0;
-        Strip() = default;
-        Strip(double slope, double perRow, double limit);
+        Slab() = default;
+        Slab(double slope, double perRow, double limit);
     };
 
     eval::InversionCell _model;
     double _middleX, _middleY, _reachX, _reachY;
-    Strip _strips[2];
+    Slab _slabs[2];
 };
 
 }  // namespace limn::engine

@@ -33,7 +33,7 @@ int FindEndOfHits(eval::Whereabouts const* where, Index const* owner, int begin,
 
 }  // namespace
 
-void TexelBand::Resize(int first, int rows, int tileWidth) {
+void TexelStrip::Resize(int first, int rows, int tileWidth) {
     firstRow = first;
     numRows = rows;
     width = tileWidth;
@@ -43,7 +43,7 @@ void TexelBand::Resize(int first, int rows, int tileWidth) {
     failed.resize(count);
 }
 
-void TexelBand::Reset(int first, int rows, int tileWidth) {
+void TexelStrip::Reset(int first, int rows, int tileWidth) {
     Resize(first, rows, tileWidth);
     std::fill(owner.begin(), owner.end(), -1);
     std::fill(overlap.begin(), overlap.end(), uint8_t{0});
@@ -95,14 +95,15 @@ std::array<double, 4> UVRaster::GetJacobian(int domain, double s, double t) {
     return jacobian;
 }
 
-std::vector<TexelHits> const& UVRaster::Rasterise(Index face, TileGrid const& grid, TexelBand& band,
-                                                  int firstColumn, int numColumns) {
+std::vector<TexelHits> const& UVRaster::Rasterise(Index face, TileGrid const& grid,
+                                                  TexelStrip& strip, int firstColumn,
+                                                  int numColumns) {
     _firstColumn = firstColumn;
     _lastColumn = std::min(grid.width, firstColumn + numColumns) - 1;
     _tree.Bind(face);
     _face = face;
     _grid = grid;
-    _band = &band;
+    _strip = &strip;
     size_t const numDomains = static_cast<size_t>(_tree.GetNumDomains());
     if (_hits.size() < numDomains) _hits.resize(numDomains);
     for (size_t domain = 0; domain < _hits.size(); ++domain) {
@@ -122,8 +123,8 @@ void UVRaster::RasterNode(int node, int depth, TexelHits& hits) {
     double const slack = 2 * kCoveredTexels;
     minX = std::max(minX - slack, static_cast<double>(_firstColumn));
     maxX = std::min(maxX + slack, static_cast<double>(_lastColumn));
-    minY = std::max(minY - slack, static_cast<double>(_band->firstRow));
-    maxY = std::min(maxY + slack, _band->firstRow + _band->numRows - 1.0);
+    minY = std::max(minY - slack, static_cast<double>(_strip->firstRow));
+    maxY = std::min(maxY + slack, _strip->firstRow + _strip->numRows - 1.0);
     if (std::ceil(minX) > std::floor(maxX) || std::ceil(minY) > std::floor(maxY)) return;
     if (depth >= kMaxDepth)
         return RasterPiece(_tree.GetLinearLeaf(node), _tree.GetDomain(node), hits);
@@ -150,7 +151,7 @@ void UVRaster::RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain cons
     piece.coefficients[0][0] = centreX - piece.originX;
     piece.coefficients[1][0] = centreY - piece.originY;
     piece.FindBounds();
-    double const top = _band->firstRow - 1.0, bottom = _band->firstRow + _band->numRows + 0.0;
+    double const top = _strip->firstRow - 1.0, bottom = _strip->firstRow + _strip->numRows + 0.0;
     if (centreY + piece.reach[1] < top || centreY - piece.reach[1] > bottom ||
         centreX + piece.reach[0] < _firstColumn - 1.0 ||
         centreX - piece.reach[0] > _lastColumn + 1.0 || piece.IsCollapsed()) {
@@ -175,8 +176,8 @@ void UVRaster::RasterCell(TexturePiece const& piece, double x, double y, double 
     _rows.clear();
     auto const [low, high] = cell.FindRows();
     int const firstRow =
-        std::max(_band->firstRow, static_cast<int>(std::ceil(std::max(low, -1.0))));
-    int const lastRow = std::min(_band->firstRow + _band->numRows - 1,
+        std::max(_strip->firstRow, static_cast<int>(std::ceil(std::max(low, -1.0))));
+    int const lastRow = std::min(_strip->firstRow + _strip->numRows - 1,
                                  static_cast<int>(std::floor(std::min(high, 1e9))));
     int numTexels = 0;
     for (int row = firstRow; row <= lastRow; ++row) {
@@ -184,7 +185,7 @@ void UVRaster::RasterCell(TexturePiece const& piece, double x, double y, double 
         int first =
             std::max(_firstColumn, static_cast<int>(std::ceil(std::clamp(from, -1.0, 1e9))));
         int last = std::min(_lastColumn, static_cast<int>(std::floor(std::clamp(to, -1.0, 1e9))));
-        int const start = (row - _band->firstRow) * _band->width;
+        int const start = (row - _strip->firstRow) * _strip->width;
         while (first <= last && IsSettled(start + first)) ++first;
         while (first <= last && IsSettled(start + last)) --last;
         if (first > last) continue;
@@ -227,8 +228,8 @@ void UVRaster::Accept(TexturePiece const& piece, TexelHits& hits) {
     auto const placeS = [&](double s) { return piece.domain.origin[0] + scale * s; };
     auto const placeT = [&](double t) { return piece.domain.origin[1] + scale * t; };
     for (CandidateRow const& row : _rows) {
-        int const texel = (row.row - _band->firstRow) * _band->width + row.column;
-        Index* const owner = &_band->owner[texel];
+        int const texel = (row.row - _strip->firstRow) * _strip->width + row.column;
+        Index* const owner = &_strip->owner[texel];
         eval::Whereabouts const* const where = &_where[row.first];
         double const *const x = &_x[row.first], *const y = &_y[row.first];
         for (int i = 0; i < row.count; ++i) {
@@ -271,7 +272,7 @@ bool UVRaster::IsCovered(TexturePiece const& piece, int texel, bool isSolved, do
     double const outside = std::max(std::abs(cs - s), std::abs(ct - t));
     if (!isSolved) {
         auto const found = SearchPiece(piece, targetX, targetY, kCoveredTexels, cs, ct);
-        if (found == SearchResult::Undecided) _band->failed[texel] = 1;
+        if (found == SearchResult::Undecided) _strip->failed[texel] = 1;
         if (found != SearchResult::Found) return false;
     } else if (outside > kClampParameter) {
         if (outside > 0.2) return false;
@@ -280,10 +281,10 @@ bool UVRaster::IsCovered(TexturePiece const& piece, int texel, bool isSolved, do
         double const dy = piece.Evaluate(1, cs - centre, ct - centre)[0] - targetY;
         if (dx * dx + dy * dy > kCoveredTexels * kCoveredTexels) return false;
     }
-    if (_band->owner[texel] >= 0) {
+    if (_strip->owner[texel] >= 0) {
         double const inside =
             std::min({cs, ct, _isTriangle ? 1.0 - cs - ct : std::min(1.0 - cs, 1.0 - ct)});
-        if (inside > kOverlapParameter && outside == 0.0) _band->overlap[texel] = 1;
+        if (inside > kOverlapParameter && outside == 0.0) _strip->overlap[texel] = 1;
         return false;
     }
     s = cs;

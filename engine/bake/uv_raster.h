@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "engine/bake/texture_piece.h"
-#include "engine/bake/uninitialized.h"
+#include "engine/images/udim.h"
 #include "eval/surface/inversion_kernel.h"
 #include "eval/surface/limit_surface.h"
+#include "far_ext/rows/large_array.h"
 
 namespace limn::engine {
 
@@ -21,13 +22,19 @@ struct TileGrid {
     int tileU = 0, tileV = 0;
     double offsetX = 0.5, offsetY = 0.5;
 
+    /// Texel centres of a UDIM tile.
+    static TileGrid OfTile(int number, int width, int height) {
+        UdimTile const tile = ToUdimTile(number);
+        return {width, height, tile.u, tile.v};
+    }
+
     /// Texel coordinates of (u, v): whole numbers at the samples.
     double ToX(double u) const { return (u - tileU) * width - offsetX; }
     double ToY(double v) const { return (tileV + 1 - v) * height - offsetY; }
 };
 
 /// Rows [firstRow, firstRow + numRows) of a tile: who covers which texel.
-struct TexelBand {
+struct TexelStrip {
     int firstRow = 0, numRows = 0, width = 0;
     std::vector<Index> owner;      ///< per texel: the lowest face that covers it, or -1
     std::vector<uint8_t> overlap;  ///< 1 where another face covers it too, apart from shared edges
@@ -39,8 +46,8 @@ struct TexelBand {
 
 /// A texel covered by a face, and where on it.
 struct TexelHits {
-    UninitializedVector<int> texel;  ///< index into the band
-    UninitializedVector<double> s, t;
+    far_ext::LargeArray<int> texel;  ///< index into the strip
+    far_ext::LargeArray<double> s, t;
 
     /// Adds `count` texels side by side, at places (placeS(i), placeT(i)).
     template <class S, class T>
@@ -79,14 +86,14 @@ public:
     /// \param surface  face-varying limit surface; \param uvs 2 per value; both kept by reference
     UVRaster(eval::LimitSurface const& surface, std::span<double const> uvs);
 
-    /// The texels of the band that `face` covers and no face before it does, one TexelHits per
+    /// The texels of the strip that `face` covers and no face before it does, one TexelHits per
     /// domain. Faces must come in ascending order.
     ///
-    /// \param firstColumn, numColumns  the part of the band that is looked at
-    std::vector<TexelHits> const& Rasterise(Index face, TileGrid const& grid, TexelBand& band,
+    /// \param firstColumn, numColumns  the part of the strip that is looked at
+    std::vector<TexelHits> const& Rasterise(Index face, TileGrid const& grid, TexelStrip& strip,
                                             int firstColumn, int numColumns);
-    std::vector<TexelHits> const& Rasterise(Index face, TileGrid const& grid, TexelBand& band) {
-        return Rasterise(face, grid, band, 0, grid.width);
+    std::vector<TexelHits> const& Rasterise(Index face, TileGrid const& grid, TexelStrip& strip) {
+        return Rasterise(face, grid, strip, 0, grid.width);
     }
 
     UVBounds GetBounds(Index face);
@@ -105,7 +112,7 @@ private:
     void RasterCell(TexturePiece const& piece, double x, double y, double half, TexelHits& hits);
     /// True if nothing is left to learn of a texel: it has an owner, and is known to be covered
     /// twice.
-    bool IsSettled(int texel) const { return _band->overlap[texel] && _band->owner[texel] >= 0; }
+    bool IsSettled(int texel) const { return _strip->overlap[texel] && _strip->owner[texel] >= 0; }
     void GatherTargets(TexturePiece const& piece, int numTexels);
     void Accept(TexturePiece const& piece, TexelHits& hits);
     bool IsCovered(TexturePiece const& piece, int texel, bool isSolved, double targetX,
@@ -117,7 +124,7 @@ private:
     // the call at hand
     Index _face = -1;
     TileGrid _grid;
-    TexelBand* _band = nullptr;
+    TexelStrip* _strip = nullptr;
     int _firstColumn = 0, _lastColumn = 0;
     // candidates of the cell at hand, row by row, and the answers for them
     struct CandidateRow {

@@ -5,6 +5,7 @@
 
 #include "engine/bake/audit/audit.h"
 #include "engine/bake/bake.h"
+#include "engine/bake/maps/map_table.h"
 #include "engine/cli/cli.h"
 #include "engine/cli/parse_number.h"
 #include "engine/io/edge_values.h"
@@ -64,29 +65,28 @@ void ParseTiles(std::vector<std::string> const& texts, engine::BakeOptions& opti
     }
 }
 
+/// "scale,offset".
+engine::Encoding ParseEncoding(std::string const& text) {
+    size_t const comma = text.find(',');
+    if (comma == std::string::npos) {
+        throw Error(ErrorCode::BadOption, "--encode: scale,offset is needed, e.g. 0.5,0.5");
+    }
+    return {ParseNumber("--encode", std::string_view(text).substr(0, comma)),
+            ParseNumber("--encode", std::string_view(text).substr(comma + 1))};
+}
+
 engine::BakeOptions MakeOptions(Arguments const& a, CommonOptions const& common) {
     engine::BakeOptions options;
     options.pattern = a.pattern;
-    options.maps.names = a.maps;
-    options.maps.isVector = a.isVector;
-    if (a.space == "tangent") options.maps.space = engine::MapSpace::Tangent;
-    if (a.space == "uv") options.maps.space = engine::MapSpace::UV;
-    options.maps.hasField = !a.fieldPath.empty();
-    options.maps.hasOtherMesh = !a.against.empty();
-    if (!a.encode.empty()) {
-        size_t const comma = a.encode.find(',');
-        if (comma == std::string::npos)
-            throw Error(ErrorCode::BadOption, "--encode: scale,offset is needed, e.g. 0.5,0.5");
-        options.maps.hasEncoding = true;
-        options.maps.encodeScale =
-            ParseNumber("--encode", std::string_view(a.encode).substr(0, comma));
-        options.maps.encodeOffset =
-            ParseNumber("--encode", std::string_view(a.encode).substr(comma + 1));
-    }
+    options.maps = a.maps;
+    options.isVector = a.isVector;
+    if (a.space == "tangent") options.space = engine::VectorSpace::Tangent;
+    if (a.space == "uv") options.space = engine::VectorSpace::UV;
+    if (!a.encode.empty()) options.encoding = ParseEncoding(a.encode);
     options.noise = a.noise;
-    options.maps.isNormalized = a.isNormalized;
-    options.maps.numBands = a.numBands;
-    if (!a.noiseRamp.empty()) options.maps.ramp = engine::ColourRamp::Parse(a.noiseRamp);
+    if (!a.noiseRamp.empty()) options.noiseRamp = engine::ColourRamp::Parse(a.noiseRamp);
+    options.isNormalized = a.isNormalized;
+    options.bands = a.numBands;
     ParseSize(a.size, options);
     ParseTiles(a.tiles, options);
     options.samplesPerSide = a.samples;
@@ -97,7 +97,7 @@ engine::BakeOptions MakeOptions(Arguments const& a, CommonOptions const& common)
     options.hasPreview = a.hasPreview;
     options.compression = engine::ParseCompression(a.compression);
     options.groups = a.groups;
-    options.skipExisting = a.skipExisting;
+    options.skipsExisting = a.skipExisting;
     options.isLeftHanded = common.IsLeftHanded();
     options.wantsChecksums = !common.reportPath.empty();
     options.version = GetVersion();
@@ -170,19 +170,18 @@ int Run(Arguments const& a, Context& context) {
     }
     int status = kDone;
     for (std::string const& path : a.meshes) {
-        auto const [scene, refiner] = context.Load(path);
+        auto const model = engine::Model::Build(context.Load(path).scene);
         if (!a.fieldPath.empty()) {
-            options.field = engine::ReadEdgeValues(a.fieldPath, refiner->GetLevel(0));
-            options.fieldHash = engine::Sha256OfFile(a.fieldPath);
+            options.field = {engine::ReadEdgeValues(a.fieldPath, model.GetLevel()),
+                             engine::Sha256OfFile(a.fieldPath)};
         }
-        Context::Mesh other;
-        if (!a.against.empty()) other = context.Load(a.against);
-        auto const report = engine::Bake(
-            scene, *refiner, a.against.empty() ? nullptr : &other.scene, options, context.GetJob());
+        if (!a.against.empty()) {
+            options.against = engine::Model::Build(context.Load(a.against).scene);
+        }
+        auto const report = engine::Bake(model, options, context.GetJob());
         AddToReport(context.GetReport(), report);
         if (!a.hasAudit) continue;
-        auto const audit =
-            engine::Audit(scene, *refiner, options, report, a.auditBound, context.GetJob());
+        auto const audit = engine::Audit(model, options, report, a.auditBound, context.GetJob());
         context.GetReport()["audit"] = ToJson(audit, report);
         if (audit.isWithin) continue;
         context.GetJob().Warn(fmt::format(
@@ -202,10 +201,7 @@ Verb AddBake(CLI::App& app) {
         ->required();
     verb->add_option("-o,--output", a->pattern, "output path with {map}, {mesh}, <UDIM> or {udim}")
         ->required();
-    verb->add_option("--maps", a->maps,
-                     "comma-separated: mean, gaussian, k1, k2, curvedness, shape-index, curvature, "
-                     "principal-direction, "
-                     "position, normal, displacement, stretch, noise, bands, field, primvar:NAME")
+    verb->add_option("--maps", a->maps, "comma-separated: " + engine::ListMapNames())
         ->delimiter(',')
         ->required();
     verb->add_option("--size", a->size, "texels: N or WxH (default 2048)");

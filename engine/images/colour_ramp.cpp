@@ -13,7 +13,7 @@ namespace limn::engine {
 ColourRamp::ColourRamp(std::vector<Colour> const& colours) : _colours(colours) {
     size_t const count = colours.size();
     if (count < 2)
-        throw Error(ErrorCode::BadOption, "--noise-ramp: at least two colours are needed");
+        throw Error(ErrorCode::BadOption, "`noiseRamp`: at least two colours are needed");
     std::vector<Colour> control =
         colours;  // ends are corners: control point and colour are the same
     for (size_t c = 0; c < 3; ++c) {
@@ -52,7 +52,7 @@ ColourRamp ColourRamp::Parse(std::string const& text) {
         if (!hasForm) {
             throw Error(
                 ErrorCode::BadOption,
-                fmt::format("--noise-ramp: '{}' is not a colour; write #rrggbb, e.g. #ff8000",
+                fmt::format("`noiseRamp`: '{}' is not a colour; write #rrggbb, e.g. #ff8000",
                             word));
         }
         colours.push_back(

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "engine/bake/preview.h"
+#include "engine/images/png.h"
 #include "eval/differential/dirmag.h"
 #include "far_ext/error.h"
 #include "far_ext/topology/refiner.h"
@@ -52,9 +53,8 @@ public:
     }
 
     void Write(std::string const& path, bool isSigned) const {
-        Map map{MapKind::Primvar, "picture", {"V"}, Averaging::Plain, isSigned, "",
-                eval::Quantity{}, 0};
-        PreviewBuilder preview(map, 0, _size, _size);
+        PreviewBuilder preview(isSigned ? RangeKind::Signed : RangeKind::Positive, 1, 0, _size,
+                               _size);
         std::vector<uint8_t> const isFilled(static_cast<size_t>(_size), 1);
         for (int row = 0; row < _size; ++row) {
             size_t const first = static_cast<size_t>(row) * static_cast<size_t>(_size);
@@ -92,12 +92,11 @@ public:
 
     /// Values from 0 (black) to 1 as greys, without a legend: they measure nothing.
     void WriteGrey(std::string const& path) const {
-        PreviewBuilder::Picture picture{_size, _size, std::vector<uint8_t>(3 * NumPixels(), 38)};
+        Picture picture(_size, _size);
         for (size_t pixel = 0; pixel < NumPixels(); ++pixel) {
-            if (_coverage[pixel] > 0.0f)
-                std::fill_n(
-                    &picture.pixels[3 * pixel], 3,
-                    static_cast<uint8_t>(255.0f * std::clamp(_values[pixel], 0.0f, 1.0f) + 0.5f));
+            if (!(_coverage[pixel] > 0.0f)) continue;
+            float const grey = std::clamp(_values[pixel], 0.0f, 1.0f);
+            picture.SetGrey(pixel, static_cast<uint8_t>(255.0f * grey + 0.5f));
         }
         WritePng(path, picture);
     }

@@ -100,6 +100,7 @@ public:
 
     /// Makes `face` (with HasLimit) the current one.
     void Bind(Index face);
+    Index GetFace() const { return _face; }  ///< the current one, or -1
 
     /// Makes `face` the current one with weights for values: channel c is the weight of the vertex
     /// (or fvar value) that GetPoints names at c, and there are as many channels as points.

@@ -6,12 +6,13 @@
 
 namespace limn::eval {
 
-SurfaceSampler::SurfaceSampler(FaceTree& tree, Quantity quantity, float orientation)
+SurfaceSampler::SurfaceSampler(FaceTree& tree, Quantity quantity, float orientation, Values values)
     : _tree(tree),
       _quantity(quantity),
       _orientation(orientation),
-      _numChannels(eval::GetNumChannels(quantity) + tree.GetLength() - 3),
-      // Extra channels are evaluated in threes, so that the last group may start early.
+      _values(values),
+      _numChannels(eval::GetNumChannels(quantity) + values.count),
+      // Values are evaluated in threes, so that the last group may start early.
       _planes(static_cast<size_t>(_numChannels + 3) * kStride),
       _degenerate(kStride) {
     auto const prepare = [&](auto& lanes) {
@@ -34,7 +35,7 @@ bool SurfaceSampler::NeedsDouble(PatchPoint const& patch) const {
 
 void SurfaceSampler::Bind(Index face) {
     _face = face;
-    _tree.Bind(face);
+    if (_tree.GetFace() != face) _tree.Bind(face);
 }
 
 template <class Real>
@@ -73,30 +74,35 @@ void SurfaceSampler::EvaluateBlock(Lanes<Real>& lanes, PatchRun const& run, size
                                    kStride,
                                    _degenerate.data()};
     EvaluateSurface(batch, _quantity, isTriangle);
-
-    // Extra channels, three at a time: the kernel's "position" of other coefficients.
-    int const numOwn = eval::GetNumChannels(_quantity), length = _tree.GetLength();
-    for (int c = 3; c < length; c += 3) {
-        int const group = std::min(c, length - 3);  // may repeat channels already done
-        SurfaceBatch<Real> extra = batch;
-        extra.coefficients = lanes.coefficients.data() + group * _tree.GetNumCoefficients();
-        if (group == c) {
-            extra.out = _planes.data() + static_cast<size_t>(numOwn + group - 3) * kStride;
-            EvaluateSurface(extra, Quantity::Position, isTriangle);
-            continue;
-        }
-        extra.out = _planes.data() + static_cast<size_t>(_numChannels) * kStride;
-        EvaluateSurface(extra, Quantity::Position, isTriangle);
-        for (int k = c; k < length; ++k) {
-            std::copy_n(extra.out + static_cast<size_t>(k - group) * kStride, count,
-                        _planes.data() + static_cast<size_t>(numOwn + k - 3) * kStride);
-        }
-    }
+    EvaluateValues(lanes, batch);
     if (_quantity == Quantity::Position) return;
     for (size_t i = 0; i < count; ++i) {
-        if (_degenerate[i]) {
-            int const sample = run.samples[first + i];
-            EvaluateExactly(domain, s[sample], t[sample], i);
+        if (!_degenerate[i]) continue;
+        int const sample = run.samples[first + i];
+        EvaluateFrameExactly(domain, s[sample], t[sample], i);  // position and values are right
+    }
+}
+
+/// Three at a time: the kernel's "position" of other coefficients.
+template <class Real>
+void SurfaceSampler::EvaluateValues(Lanes<Real> const& lanes, SurfaceBatch<Real> const& batch) {
+    bool const isTriangle = _tree.GetNumCoefficients() == 15;
+    float* const values = _planes.data() + static_cast<size_t>(GetFirstValue()) * kStride;
+    int const end = _values.first + _values.count;
+    for (int c = _values.first; c < end; c += 3) {
+        int const group = std::min(c, end - 3);  // may begin with channels that are not asked for
+        SurfaceBatch<Real> part = batch;
+        part.coefficients = lanes.coefficients.data() + group * _tree.GetNumCoefficients();
+        if (group == c) {
+            part.out = values + static_cast<size_t>(c - _values.first) * kStride;
+            EvaluateSurface(part, Quantity::Position, isTriangle);
+            continue;
+        }
+        part.out = _planes.data() + static_cast<size_t>(_numChannels) * kStride;
+        EvaluateSurface(part, Quantity::Position, isTriangle);
+        for (int k = c; k < end; ++k) {
+            std::copy_n(part.out + static_cast<size_t>(k - group) * kStride, batch.count,
+                        values + static_cast<size_t>(k - _values.first) * kStride);
         }
     }
 }
@@ -109,37 +115,35 @@ template void SurfaceSampler::EvaluateBlock(Lanes<double>&, PatchRun const&, siz
                                             std::span<double const>, std::span<double const>);
 
 void SurfaceSampler::EvaluateExactly(int domain, double s, double t, size_t column) {
+    PutVector(kPositionX, column, EvaluateFrameExactly(domain, s, t, column).position);
+    for (int k = 0; k < _values.count; ++k) {
+        Put(GetFirstValue() + k, column, EvaluateChannel(_tree, domain, s, t, _values.first + k));
+    }
+}
+
+SurfaceSample SurfaceSampler::EvaluateFrameExactly(int domain, double s, double t, size_t column) {
     SurfaceSample const sample = EvaluateSample(_tree, domain, s, t, _orientation);
-    auto const put = [&](int channel, double value) {
-        _planes[static_cast<size_t>(channel) * kStride + column] = static_cast<float>(value);
-    };
-    auto const putVector = [&](int channel, Eigen::Vector3d const& v) {
-        for (int c = 0; c < 3; ++c) put(channel + c, v[c]);
-    };
-    putVector(kPositionX, sample.position);
-    if (_quantity != Quantity::Position) putVector(kNormalX, sample.normal);
-    if (_quantity == Quantity::Tangents) {
-        putVector(kTangentSX, sample.tangentS);
-        putVector(kTangentTX, sample.tangentT);
-    }
-    if (NeedsCurvature()) {
-        put(kMean, sample.curvature.mean);
-        put(kGaussian, sample.curvature.gaussian);
-        put(kK1, sample.curvature.k1);
-        put(kK2, sample.curvature.k2);
-        if (sample.isMoved) {
-            ++_counts.moved;
-            if (_counts.movedPlaces.size() < kMaxPlaces) {
-                _counts.movedPlaces.push_back({_face, domain, s, t});
-            }
-        }
-    }
-    if (_quantity >= Quantity::Direction) putVector(kDirectionX, sample.curvature.direction);
     if (sample.isDegenerate) ++_counts.degenerate;
-    int const numOwn = eval::GetNumChannels(_quantity);
-    for (int c = 3; c < _tree.GetLength(); ++c) {
-        put(numOwn + c - 3, EvaluateChannel(_tree, domain, s, t, c));
+    if (_quantity == Quantity::Position) return sample;
+    PutVector(kNormalX, column, sample.normal);
+    if (_quantity == Quantity::Tangents) {
+        PutVector(kTangentSX, column, sample.tangentS);
+        PutVector(kTangentTX, column, sample.tangentT);
     }
+    if (!NeedsCurvature()) return sample;
+    Put(kMean, column, sample.curvature.mean);
+    Put(kGaussian, column, sample.curvature.gaussian);
+    Put(kK1, column, sample.curvature.k1);
+    Put(kK2, column, sample.curvature.k2);
+    if (_quantity >= Quantity::Direction) {
+        PutVector(kDirectionX, column, sample.curvature.direction);
+    }
+    if (!sample.isMoved) return sample;
+    ++_counts.moved;
+    if (_counts.movedPlaces.size() < kMaxPlaces) {
+        _counts.movedPlaces.push_back({_face, domain, s, t});
+    }
+    return sample;
 }
 
 }  // namespace limn::eval

@@ -14,13 +14,31 @@ namespace limn::eval {
 /// curvature needs it (deep pieces, triangles); the few that no batch can do (next to an irregular
 /// corner, without tangent plane) one by one.
 ///
-/// Channels  those of the quantity (SurfaceChannel), then the tree's channels from 3 on as values.
-/// Threads   one per thread, with its own tree
+/// Channels  those of the quantity (SurfaceChannel), then values: further channels of the tree.
+/// Bits      Samplers of Position and of Normal agree in what both have, and so do those of
+///           Curvature, Direction and Tangents (SharesBits); between these two kinds they differ by
+///           rounding.
+/// Threads   one per thread, with its own tree; several samplers may share a tree
 class SurfaceSampler {
 public:
+    /// A run of the tree's channels beside the position.
+    struct Values {
+        int first = 3, count = 0;
+    };
+
     /// \param tree         its first three channels are the position; kept by reference
     /// \param orientation  +1, or -1 to turn normals round
-    SurfaceSampler(FaceTree& tree, Quantity quantity, float orientation);
+    /// \param values       which of the tree's channels to evaluate, too
+    SurfaceSampler(FaceTree& tree, Quantity quantity, float orientation, Values values);
+
+    /// With all of the tree's channels.
+    SurfaceSampler(FaceTree& tree, Quantity quantity, float orientation)
+        : SurfaceSampler(tree, quantity, orientation, {3, tree.GetLength() - 3}) {}
+
+    /// True where samplers of both quantities give the same bits.
+    static bool SharesBits(Quantity a, Quantity b) {
+        return (a >= Quantity::Curvature) == (b >= Quantity::Curvature);
+    }
 
     struct Place {
         Index face;
@@ -42,6 +60,8 @@ public:
     void Evaluate(int domain, std::span<double const> s, std::span<double const> t, Visit visit);
 
     int GetNumChannels() const { return _numChannels; }
+    /// Where the values begin among the planes.
+    int GetFirstValue() const { return eval::GetNumChannels(_quantity); }
     Counts const& GetCounts() const { return _counts; }
 
 private:
@@ -61,11 +81,22 @@ private:
     template <class Real>
     void EvaluateBlock(Lanes<Real>& lanes, PatchRun const& run, size_t first, size_t count,
                        int domain, std::span<double const> s, std::span<double const> t);
+    template <class Real>
+    void EvaluateValues(Lanes<Real> const& lanes, SurfaceBatch<Real> const& batch);
     void EvaluateExactly(int domain, double s, double t, size_t column);
+    /// All but the position and the values.
+    SurfaceSample EvaluateFrameExactly(int domain, double s, double t, size_t column);
+    void Put(int channel, size_t column, double value) {
+        _planes[static_cast<size_t>(channel) * kStride + column] = static_cast<float>(value);
+    }
+    void PutVector(int channel, size_t column, Eigen::Vector3d const& v) {
+        for (int c = 0; c < 3; ++c) Put(channel + c, column, v[c]);
+    }
 
     FaceTree& _tree;
     Quantity _quantity;
     float _orientation;
+    Values _values;
     int _numChannels;
     Index _face = -1;
     Counts _counts;

@@ -47,13 +47,13 @@ TEST_P(GoldenBake, IsWhatItWas) {
     engine::Scene const spot = test::LoadData("../../scenes/spot/spot.obj");
     engine::BakeOptions options;
     options.pattern = folder / "now.exr";
-    options.maps.names = {map};
+    options.maps = {map};
     options.width = options.height = 64;
     options.samplesPerSide = 2;
     options.hasCoverage = true;
     options.version = "golden";
     engine::Job job;
-    engine::Bake(spot, *far_ext::CreateRefiner(spot.cage), nullptr, options, job);
+    engine::Bake(engine::Model::Build(spot), options, job);
     engine::ExrLookup lookup;
     std::string const before = std::string(LIMN_TEST_DATA) + "/../golden/spot." + map + ".exr";
     for (int y = 0; y < 64; ++y) {

@@ -7,33 +7,29 @@
 
 namespace limn::engine {
 
-AuditInput::AuditInput(Scene const& bakedScene, Far::TopologyRefiner const& refiner,
-                       BakeOptions const& bakeOptions, BakeReport const& bakeReport)
-    : scene(bakedScene),
-      level(refiner.GetLevel(0)),
+AuditInput::AuditInput(Model const& bakedModel, BakeOptions const& bakeOptions,
+                       BakeReport const& bakeReport, Job const& auditJob)
+    : model(bakedModel),
+      level(model.GetLevel()),
       options(bakeOptions),
       bake(bakeReport),
-      surface(refiner),
-      uvSurface(refiner, 0),
-      isBaked(scene.cage.faceSizes.size(), 1) {
-    if (!options.groups.empty()) isBaked = SelectGroups(scene, options.groups);
+      job(auditJob),
+      surface(model.GetRefiner()),
+      uvSurface(model.GetRefiner(), 0),
+      isBaked(model.GetCage().faceSizes.size(), 1) {
+    if (!options.groups.empty()) isBaked = model.SelectGroups(options.groups);
     for (Index face = 0; face < surface.GetNumFaces(); ++face)
         isBaked[face] &= surface.HasLimit(face);
 }
 
 TileGrid AuditInput::MakeGrid(int tile) const {
-    TileGrid grid;
-    grid.width = options.width;
-    grid.height = options.height;
-    grid.tileU = (tile - 1001) % 10;
-    grid.tileV = (tile - 1001) / 10;
-    return grid;
+    return TileGrid::OfTile(tile, options.width, options.height);
 }
 
-AuditReport Audit(Scene const& scene, Far::TopologyRefiner const& refiner,
-                  BakeOptions const& options, BakeReport const& bake, double bound, Job& job) {
-    job.Start(fmt::format("auditing {}", scene.name), 2);
-    AuditInput const input(scene, refiner, options, bake);
+AuditReport Audit(Model const& model, BakeOptions const& options, BakeReport const& bake,
+                  double bound, Job& job) {
+    job.Start(fmt::format("auditing {}", model.GetName()), 2);
+    AuditInput const input(model, options, bake, job);
     AuditReport report;
     report.seams = AuditSeams(input);
     job.Advance();

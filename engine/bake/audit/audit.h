@@ -16,10 +16,10 @@ struct AuditReport {
 
 /// Checks finished files [Bake 8], [Bake 9]: seams and the integral of Gaussian curvature.
 ///
-/// \param bake   what Bake returned for the same scene and options
+/// \param bake   what Bake returned for the same mesh and options
 /// \param bound  of the relative error of Gauss-Bonnet
 /// \throws Error Io where a file cannot be read back
-AuditReport Audit(Scene const& scene, Far::TopologyRefiner const& refiner,
-                  BakeOptions const& options, BakeReport const& bake, double bound, Job& job);
+AuditReport Audit(Model const& model, BakeOptions const& options, BakeReport const& bake,
+                  double bound, Job& job);
 
 }  // namespace limn::engine

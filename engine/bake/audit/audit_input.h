@@ -3,25 +3,24 @@
 
 #include <vector>
 
-#include <opensubdiv/far/topologyRefiner.h>
-
 #include "engine/bake/bake.h"
 #include "engine/bake/uv_raster.h"
 #include "eval/surface/limit_surface.h"
 
 namespace limn::engine {
 
-/// What every audit of a bake looks at; all but the surfaces is kept by reference.
+/// What every audit of a bake looks at; options, report and job are kept by reference.
 struct AuditInput {
-    AuditInput(Scene const& bakedScene, Far::TopologyRefiner const& refiner,
-               BakeOptions const& bakeOptions, BakeReport const& bakeReport);
+    AuditInput(Model const& bakedModel, BakeOptions const& bakeOptions,
+               BakeReport const& bakeReport, Job const& auditJob);
 
     TileGrid MakeGrid(int tile) const;
 
-    Scene const& scene;
+    Model model;
     Far::TopologyLevel level;
     BakeOptions const& options;
     BakeReport const& bake;
+    Job const& job;
     eval::LimitSurface surface, uvSurface;
     std::vector<char> isBaked;  ///< per face: selected, and with a limit
 };

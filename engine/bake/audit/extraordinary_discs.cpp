@@ -49,7 +49,7 @@ ExtraordinaryDiscs::ExtraordinaryDiscs(AuditInput const& input, std::vector<char
             disc.sectors.push_back({face, domain, 2, 0.5});
         _discs.push_back(std::move(disc));
     }
-    UVRaster raster(input.uvSurface, input.scene.uvs);
+    UVRaster raster(input.uvSurface, input.model.GetUVs());
     std::erase_if(_discs, [&](Disc& disc) { return !ChooseRadius(disc.sectors, raster); });
     Integrate();
 }
@@ -109,9 +109,9 @@ bool ExtraordinaryDiscs::ChooseRadius(std::vector<eval::DiscSector>& sectors,
 
 void ExtraordinaryDiscs::Integrate() {
     tbb::enumerable_thread_specific<eval::FaceTree> trees(
-        [&] { return eval::FaceTree(_input.surface, _input.scene.positions, 3); });
+        [&] { return eval::FaceTree(_input.surface, _input.model.GetPositions(), 3); });
     tbb::parallel_for(size_t{0}, _discs.size(), [&](size_t i) {
-        CheckInterrupted();
+        _input.job.CheckStopped();
         _discs[i].integral = eval::IntegrateDisc(trees.local(), _discs[i].sectors);
     });
     // Without a tangent plane somewhere on the border the theorem says nothing: texels are the

@@ -10,6 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include "engine/bake/audit/extraordinary_discs.h"
+#include "engine/bake/face_bins.h"
 #include "eval/surface/face_places.h"
 #include "eval/surface/surface_sampler.h"
 #include "far_ext/topology/face_components.h"
@@ -20,7 +21,7 @@ namespace {
 
 using Level = Far::TopologyLevel;
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kBandRows = 64;
+constexpr int kStripRows = 64;
 
 class GaussBonnetAuditor {
 public:
@@ -47,17 +48,15 @@ private:
         eval::FaceTree tree;
         eval::SurfaceSampler sampler;
         UVRaster raster;
-        TexelBand band;
+        TexelStrip strip;
         explicit Worker(AuditInput const& input)
-            : tree(input.surface, input.scene.positions, 3),
+            : tree(input.surface, input.model.GetPositions(), 3),
               sampler(tree, eval::Quantity::Tangents, 1.0f),
-              raster(input.uvSurface, input.scene.uvs) {}
+              raster(input.uvSurface, input.model.GetUVs()) {}
     };
 
     std::vector<double> FindAreas() const;
     std::string FindReason(int component) const;
-    std::vector<std::vector<Index>> BinFaces(TileGrid const& grid,
-                                             std::vector<UVBounds> const& bounds) const;
     std::vector<Sums> SumTexels(ExtraordinaryDiscs const& discs) const;
     void SumFace(Worker& worker, ExtraordinaryDiscs const& discs, Index face, TileGrid const& grid,
                  Sums& sums) const;
@@ -66,65 +65,46 @@ private:
     far_ext::FaceComponents _components;
 };
 
-/// Per band, the faces whose bounds reach a texel centre of it, in ascending order.
-std::vector<std::vector<Index>> GaussBonnetAuditor::BinFaces(
-    TileGrid const& grid, std::vector<UVBounds> const& bounds) const {
-    std::vector<std::vector<Index>> bins(
-        static_cast<size_t>((grid.height + kBandRows - 1) / kBandRows));
-    for (Index face = 0; face < static_cast<Index>(bounds.size()); ++face) {
-        if (!_input.isBaked[face]) continue;
-        UVBounds const& b = bounds[face];
-        double const slack = 1.0;  // a face covers 1e-4 texel beyond its border
-        double const top = grid.ToY(b.maxV) - slack, bottom = grid.ToY(b.minV) + slack;
-        if (!(grid.ToX(b.maxU) + slack >= 0.0 && grid.ToX(b.minU) - slack <= grid.width - 1.0))
-            continue;
-        if (!(bottom >= 0.0 && top <= grid.height - 1.0)) continue;
-        int const first = static_cast<int>(std::max(top, 0.0)) / kBandRows;
-        int const last = static_cast<int>(std::min(bottom, grid.height - 1.0)) / kBandRows;
-        for (int band = first; band <= last; ++band) bins[band].push_back(face);
-    }
-    return bins;
-}
-
-/// K dA over texel centres, per component; band sums are added in order, whatever the threads.
+/// K dA over texel centres, per component; strip sums are added in order, whatever the threads.
 std::vector<GaussBonnetAuditor::Sums> GaussBonnetAuditor::SumTexels(
     ExtraordinaryDiscs const& discs) const {
     tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers;
     std::vector<Sums> total(static_cast<size_t>(_components.count));
     std::vector<UVBounds> bounds(_input.isBaked.size());
-    UVRaster measure(_input.uvSurface, _input.scene.uvs);
+    UVRaster measure(_input.uvSurface, _input.model.GetUVs());
     for (Index face = 0; face < static_cast<Index>(bounds.size()); ++face) {
         if (_input.isBaked[face]) bounds[face] = measure.GetBounds(face);
     }
     for (int tile : _input.bake.tiles) {
         TileGrid const grid = _input.MakeGrid(tile);
-        auto const bins = BinFaces(grid, bounds);
-        std::vector<std::vector<Sums>> ofBand(bins.size(), std::vector<Sums>(total.size()));
-        tbb::parallel_for(size_t{0}, bins.size(), [&](size_t index) {
-            CheckInterrupted();
+        FaceBins const bins(bounds, _input.isBaked, grid, kStripRows, grid.width);
+        size_t const numStrips = static_cast<size_t>(bins.GetNumStrips());
+        std::vector<std::vector<Sums>> ofStrip(numStrips, std::vector<Sums>(total.size()));
+        tbb::parallel_for(size_t{0}, numStrips, [&](size_t index) {
+            _input.job.CheckStopped();
             auto& slot = workers.local();
             if (!slot) slot = std::make_unique<Worker>(_input);
-            int const firstRow = static_cast<int>(index) * kBandRows;
-            slot->band.Reset(firstRow, std::min(kBandRows, grid.height - firstRow), grid.width);
-            for (Index face : bins[index])
-                SumFace(*slot, discs, face, grid, ofBand[index][_components.ofFace[face]]);
-            TexelBand const& band = slot->band;
-            for (size_t texel = 0; texel < band.owner.size(); ++texel) {
-                if (band.overlap[texel])
-                    ++ofBand[index][_components.ofFace[band.owner[texel]]].overlaps;
+            int const firstRow = static_cast<int>(index) * kStripRows;
+            slot->strip.Reset(firstRow, std::min(kStripRows, grid.height - firstRow), grid.width);
+            for (Index face : bins.GetStrip(static_cast<int>(index))[0])
+                SumFace(*slot, discs, face, grid, ofStrip[index][_components.ofFace[face]]);
+            TexelStrip const& strip = slot->strip;
+            for (size_t texel = 0; texel < strip.owner.size(); ++texel) {
+                if (strip.overlap[texel])
+                    ++ofStrip[index][_components.ofFace[strip.owner[texel]]].overlaps;
             }
         });
-        for (auto const& sums : ofBand) {
+        for (auto const& sums : ofStrip) {
             for (size_t c = 0; c < total.size(); ++c) total[c].Add(sums[c]);
         }
     }
     return total;
 }
 
-/// Adds what lies of a face in the worker's band.
+/// Adds what lies of a face in the worker's strip.
 void GaussBonnetAuditor::SumFace(Worker& worker, ExtraordinaryDiscs const& discs, Index face,
                                  TileGrid const& grid, Sums& sums) const {
-    auto const& hits = worker.raster.Rasterise(face, grid, worker.band);
+    auto const& hits = worker.raster.Rasterise(face, grid, worker.strip);
     worker.sampler.Bind(face);
     for (int domain = 0; domain < _input.surface.GetNumDomains(face); ++domain) {
         auto const& [texels, s, t] = hits[domain];
@@ -159,7 +139,7 @@ void GaussBonnetAuditor::SumFace(Worker& worker, ExtraordinaryDiscs const& discs
 /// Surface area per component, to tell whether texels cover it.
 std::vector<double> GaussBonnetAuditor::FindAreas() const {
     std::vector<double> areas(static_cast<size_t>(_components.count), 0.0);
-    eval::FaceTree tree(_input.surface, _input.scene.positions, 3);
+    eval::FaceTree tree(_input.surface, _input.model.GetPositions(), 3);
     for (Index face = 0; face < _input.surface.GetNumFaces(); ++face) {
         if (!_input.surface.HasLimit(face)) continue;
         tree.Bind(face);
@@ -175,7 +155,7 @@ std::vector<double> GaussBonnetAuditor::FindAreas() const {
 /// Why a component cannot be audited, by its topology and tags; empty if it can.
 std::string GaussBonnetAuditor::FindReason(int component) const {
     Level const& level = _input.level;
-    if (_input.scene.cage.scheme == Sdc::SCHEME_BILINEAR)
+    if (_input.model.GetCage().scheme == Sdc::SCHEME_BILINEAR)
         return "a bilinear surface has a crease along every edge";
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         if (_components.ofFace[face] != component) continue;

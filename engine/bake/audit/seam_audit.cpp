@@ -9,6 +9,7 @@
 
 #include "engine/bake/layout.h"
 #include "engine/images/exr_lookup.h"
+#include "engine/images/udim.h"
 #include "eval/surface/face_places.h"
 
 namespace limn::engine {
@@ -17,14 +18,14 @@ namespace {
 
 using Level = Far::TopologyLevel;
 
-SeamAudit AuditSeamsOf(AuditInput const& input, Map const& map,
+SeamAudit AuditSeamsOf(AuditInput const& input, MapTraits const& map,
                        std::vector<std::string> const& channels,
                        std::map<int, std::string> const& pathOfTile) {
     Level const& level = input.level;
     SeamAudit audit;
     audit.map = map.name;
     ExrLookup lookup;
-    UVRaster raster(input.uvSurface, input.scene.uvs);
+    UVRaster raster(input.uvSurface, input.model.GetUVs());
     std::vector<double> differences;
     // Values of one side of a seam at a few places along it; empty where the place has no tile.
     constexpr int kPlaces = 8;
@@ -40,11 +41,11 @@ SeamAudit AuditSeamsOf(AuditInput const& input, Map const& map,
             // A seam on a tile's border belongs to the tile its face lies in: look a hair inside.
             auto const [cu, cv] = raster.Evaluate(place.domain, 0.01 * 0.5 + 0.99 * place.s,
                                                   0.01 * 0.5 + 0.99 * place.t);
-            int const tile =
-                1001 + static_cast<int>(std::floor(cu)) + 10 * static_cast<int>(std::floor(cv));
+            auto const inside = FindUdimTile(cu, cv);
+            int const tile = inside ? inside->GetNumber() : 0;
             auto const path = pathOfTile.find(tile);
             values.emplace_back();
-            if (path == pathOfTile.end() || cu < 0.0 || cu >= 10.0 || cv < 0.0) continue;
+            if (path == pathOfTile.end()) continue;
             TileGrid const grid = input.MakeGrid(tile);
             values.back() = lookup.Look(path->second, channels, grid.ToX(u), grid.ToY(v));
         }
@@ -55,9 +56,8 @@ SeamAudit AuditSeamsOf(AuditInput const& input, Map const& map,
         if (faces.size() != 2 || level.DoesEdgeFVarTopologyMatch(edge, 0)) continue;
         if (!input.isBaked[faces[0]] || !input.isBaked[faces[1]] || faces[0] == faces[1]) continue;
         // Across an infinitely sharp edge each side rightly has its own normal and curvature.
-        bool const isContinuous = map.kind == MapKind::Position || map.kind == MapKind::Primvar;
-        if (level.IsEdgeInfSharp(edge) && !isContinuous) continue;
-        CheckInterrupted();
+        if (level.IsEdgeInfSharp(edge) && !map.isSameAcrossCreases) continue;
+        input.job.CheckStopped();
         auto const locals = level.GetEdgeFaceLocalIndices(edge);
         auto const a = lookAlong(faces[0], locals[0], false),
                    b = lookAlong(faces[1], locals[1], true);
@@ -72,7 +72,7 @@ SeamAudit AuditSeamsOf(AuditInput const& input, Map const& map,
                 audit.max = difference;
                 audit.place =
                     fmt::format("edge {} {} between {} and {}", ends[0], ends[1],
-                                input.scene.NameFace(faces[0]), input.scene.NameFace(faces[1]));
+                                input.model.NameFace(faces[0]), input.model.NameFace(faces[1]));
             }
             differences.push_back(difference);
         }
@@ -86,26 +86,33 @@ SeamAudit AuditSeamsOf(AuditInput const& input, Map const& map,
     return audit;
 }
 
+/// Names in the file of the channels that can be compared; lines have no sign to compare.
+std::vector<std::string> ListComparable(FileLayout const& file, MapTraits const& map, int first) {
+    std::vector<std::string> names;
+    for (ChannelGroup const& group : map.GetGroups()) {
+        if (group.averaging == Averaging::Line || !map.isComparableAtSeams) continue;
+        auto const begin = file.channelNames.begin() + first + group.first;
+        names.insert(names.end(), begin, begin + group.count);
+    }
+    return names;
+}
+
 }  // namespace
 
 std::vector<SeamAudit> AuditSeams(AuditInput const& input) {
     std::map<std::string, std::map<int, std::string>> paths;  // per map name of the file, per tile
-    for (BakeOutput const& output : input.bake.outputs)
+    for (BakeOutput const& output : input.bake.outputs) {
         paths[output.map][output.tile] = output.path;
-    std::vector<Map> const maps = MakeMaps(input.options.maps, input.scene);
+    }
     std::vector<SeamAudit> audits;
-    for (FileLayout const& file :
-         LayOutFiles(maps, input.options.pattern, input.options.hasCoverage)) {
+    for (FileLayout const& file : input.bake.files) {
         auto const found = paths.find(file.mapName);
         if (found == paths.end()) continue;
-        size_t first = 0;
-        for (Map const& map : file.maps) {
-            auto const begin = file.channelNames.begin() + static_cast<ptrdiff_t>(first);
-            std::vector<std::string> const channels(begin, begin + map.GetNumChannels());
-            first += channels.size();
-            if (map.averaging == Averaging::Line) continue;  // a line has no sign to compare
-            if (map.kind == MapKind::Field && map.GetNumChannels() == 2)
-                continue;  // each side has its own coordinates
+        int first = 0;
+        for (MapTraits const& map : file.maps) {
+            auto const channels = ListComparable(file, map, first);
+            first += map.GetNumChannels();
+            if (channels.empty()) continue;
             audits.push_back(AuditSeamsOf(input, map, channels, found->second));
         }
     }

@@ -24,17 +24,16 @@ using engine::BakeReport;
 BakeOptions MakeOptions(std::string const& pattern, std::vector<std::string> maps, int size) {
     BakeOptions options;
     options.pattern = pattern;
-    options.maps.names = std::move(maps);
+    options.maps = std::move(maps);
     options.width = options.height = size;
     options.wantsChecksums = true;
     options.version = "test";
     return options;
 }
 
-BakeReport RunBake(engine::Scene const& scene, BakeOptions const& options,
-                   engine::Scene const* other = nullptr) {
+BakeReport RunBake(engine::Scene const& scene, BakeOptions const& options) {
     engine::Job job;
-    return engine::Bake(scene, *far_ext::CreateRefiner(scene.cage), other, options, job);
+    return engine::Bake(engine::Model::Build(scene), options, job);
 }
 
 // The torus's UVs are its parameters, so the texel's surface point is known by evaluating face and
@@ -134,18 +133,18 @@ TEST(Bake, BandsAddUpToTheWayFromTheSmoothBase) {
         spot, eval::LimitOperator::Build(*far_ext::CreateRefiner(spot.cage)), 3)[0];
     for (bool const isVector : {false, true}) {
         auto bands = MakeOptions(folder / "bands.exr", {"bands"}, 64);
-        bands.maps.numBands = 3;
-        bands.maps.isVector = isVector;
+        bands.bands = 3;
+        bands.isVector = isVector;
         RunBake(spot, bands);
         auto way = MakeOptions(folder / "way.exr", {"displacement"}, 64);
-        way.maps.hasOtherMesh = true;
-        way.maps.isVector = isVector;
-        RunBake(spot, way, &base);
+        way.against = engine::Model::Build(base);
+        way.isVector = isVector;
+        RunBake(spot, way);
         auto both = MakeOptions(folder / "both.{map}.exr", {"bands", "displacement"}, 64);
-        both.maps = way.maps;
-        both.maps.names = {"bands", "displacement"};
-        both.maps.numBands = 3;
-        RunBake(spot, both, &base);
+        both.against = engine::Model::Build(base);
+        both.isVector = isVector;
+        both.bands = 3;
+        RunBake(spot, both);
         engine::ExrLookup lookup;
         std::vector<std::string> const axes =
             isVector ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"};
@@ -183,11 +182,12 @@ TEST(Bake, DisplacementIsTheDifferenceToTheOtherLimit) {
     engine::Scene moved = torus;
     for (size_t i = 2; i < moved.positions.size(); i += 3) moved.positions[i] += 0.25;
     auto options = MakeOptions(folder / "{map}.exr", {"displacement", "normal"}, 32);
-    options.maps.hasOtherMesh = true;
-    RunBake(torus, options, &moved);
+    options.against = engine::Model::Build(moved);
+    RunBake(torus, options);
     auto vectors = MakeOptions(folder / "vector.exr", {"displacement"}, 32);
-    vectors.maps.hasOtherMesh = vectors.maps.isVector = true;
-    RunBake(torus, vectors, &moved);
+    vectors.against = engine::Model::Build(moved);
+    vectors.isVector = true;
+    RunBake(torus, vectors);
     engine::ExrLookup lookup;
     for (int x = 1; x < 32; x += 3) {
         double const along = lookup.Look(folder / "displacement.exr", {"Y"}, x, 9)[0];
@@ -209,12 +209,13 @@ TEST(Bake, TangentSpaceKeepsLengthAndNormalPart) {
     for (size_t i = 0; i < moved.positions.size(); ++i)
         moved.positions[i] += i % 3 == 0 ? 0.2 : 0.1;
     auto options = MakeOptions(folder / "v.exr", {"displacement"}, 32);
-    options.maps.hasOtherMesh = options.maps.isVector = true;
-    options.maps.space = engine::MapSpace::Tangent;
-    RunBake(torus, options, &moved);
+    options.against = engine::Model::Build(moved);
+    options.isVector = true;
+    options.space = engine::VectorSpace::Tangent;
+    RunBake(torus, options);
     auto scalar = MakeOptions(folder / "s.exr", {"displacement"}, 32);
-    scalar.maps.hasOtherMesh = true;
-    RunBake(torus, scalar, &moved);
+    scalar.against = engine::Model::Build(moved);
+    RunBake(torus, scalar);
     engine::ExrLookup lookup;
     for (int x = 1; x < 32; x += 3) {
         auto const v = lookup.Look(folder / "v.exr", {"R", "G", "B"}, x, 20);
@@ -267,8 +268,7 @@ TEST(Bake, EncodingScalesAndOffsets) {
     engine::Scene const torus = test::MakeTorus(12, 8);
     RunBake(torus, MakeOptions(folder / "plain.exr", {"normal"}, 16));
     auto options = MakeOptions(folder / "encoded.exr", {"normal"}, 16);
-    options.maps.hasEncoding = true;
-    options.maps.encodeScale = options.maps.encodeOffset = 0.5;
+    options.encoding = engine::Encoding{0.5, 0.5};
     RunBake(torus, options);
     engine::ExrLookup lookup;
     double const plain = lookup.Look(folder / "plain.exr", {"R"}, 5, 5)[0];
@@ -323,8 +323,7 @@ TEST(Bake, GaussBonnetHoldsOnClosedMeshes) {
         auto options = MakeOptions(folder / "{mesh}.{map}.<UDIM>.exr", {"position"}, 512);
         auto const report = RunBake(scene, options);
         engine::Job job;
-        auto const audit =
-            engine::Audit(scene, *far_ext::CreateRefiner(scene.cage), options, report, 1e-3, job);
+        auto const audit = engine::Audit(engine::Model::Build(scene), options, report, 1e-3, job);
         ASSERT_EQ(audit.gaussBonnet.size(), 1u);
         EXPECT_TRUE(audit.gaussBonnet[0].wasAudited) << audit.gaussBonnet[0].reason;
         EXPECT_NEAR(audit.gaussBonnet[0].expected, expected, 1e-12);
@@ -340,8 +339,7 @@ TEST(Bake, SeamsOfPositionsCloseWithinATexel) {
     auto const options = MakeOptions(folder / "{map}.exr", {"position"}, 256);
     auto const report = RunBake(torus, options);
     engine::Job job;
-    auto const audit =
-        engine::Audit(torus, *far_ext::CreateRefiner(torus.cage), options, report, 1e-3, job);
+    auto const audit = engine::Audit(engine::Model::Build(torus), options, report, 1e-3, job);
     ASSERT_EQ(audit.seams.size(), 1u);
     EXPECT_GT(audit.seams[0].samples, 100u);
     EXPECT_LT(audit.seams[0].max, 2 * std::acos(-1.0) * 1.5 / 256);  // circumference over size

@@ -11,7 +11,7 @@
 namespace limn {
 namespace {
 
-using engine::TexelBand;
+using engine::TexelStrip;
 using engine::TileGrid;
 using engine::UVRaster;
 
@@ -41,7 +41,7 @@ engine::Scene MakePlane(int n, double low, double high) {
 }
 
 struct Covering {
-    TexelBand band;
+    TexelStrip strip;
     size_t numHits = 0, numExact = 0;
 };
 
@@ -57,10 +57,10 @@ Covering CoverAndCheck(engine::Scene const& scene, int size, int tile = 1001, in
     grid.tileU = (tile - 1001) % 10;
     grid.tileV = (tile - 1001) / 10;
     Covering result;
-    result.band.Reset(0, size, size);
+    result.strip.Reset(0, size, size);
     for (Index face = 0; face < surface.GetNumFaces(); ++face) {
         if (!surface.HasLimit(face)) continue;
-        auto const hits = raster.Rasterise(face, grid, result.band);
+        auto const hits = raster.Rasterise(face, grid, result.strip);
         for (int domain = 0; domain < surface.GetNumDomains(face); ++domain) {
             for (size_t i = 0; i < hits[domain].texel.size(); ++i) {
                 double const s = hits[domain].s[i], t = hits[domain].t[i];
@@ -70,7 +70,7 @@ Covering CoverAndCheck(engine::Scene const& scene, int size, int tile = 1001, in
                 EXPECT_LT(std::hypot(dx, dy), 1.01e-4) << "face " << face;
                 result.numExact += std::hypot(dx, dy) < 1.01 * eval::kInversionEnd;
                 EXPECT_TRUE(s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0);
-                EXPECT_EQ(result.band.owner[hits[domain].texel[i]], face);
+                EXPECT_EQ(result.strip.owner[hits[domain].texel[i]], face);
                 ++result.numHits;
             }
         }
@@ -92,8 +92,8 @@ TEST(UVRaster, APlaneOverTheTileCoversEveryTexelOnce) {
     for (int n : {1, 3, 7}) {
         auto const covering = CoverAndCheck(MakePlane(n, 0.0, 1.0), 64);
         EXPECT_EQ(covering.numHits, 64u * 64u) << n;
-        EXPECT_EQ(Count(covering.band.overlap), 0u);
-        EXPECT_EQ(Count(covering.band.failed), 0u);
+        EXPECT_EQ(Count(covering.strip.overlap), 0u);
+        EXPECT_EQ(Count(covering.strip.failed), 0u);
     }
 }
 
@@ -129,7 +129,7 @@ TEST(UVRaster, TheLowestFaceWinsWhereFacesOverlap) {
     for (Index v : {4, 5, 7, 6}) scene.cage.fvarChannels[0].valueIndices.push_back(v);
     auto const covering = CoverAndCheck(scene, 32);
     EXPECT_EQ(covering.numHits, 32u * 32u);  // all of face 0, nothing of face 1
-    EXPECT_EQ(Count(covering.band.overlap), 16u * 16u);
+    EXPECT_EQ(Count(covering.strip.overlap), 16u * 16u);
 }
 
 class UVRasterOnMesh : public testing::TestWithParam<char const*> {};
@@ -142,7 +142,7 @@ TEST_P(UVRasterOnMesh, HitsMapToTexelCentres) {
     ASSERT_TRUE(scene.HasUVs());
     auto const covering = CoverAndCheck(scene, 96);
     EXPECT_GT(covering.numHits, 0u);
-    EXPECT_EQ(Count(covering.band.failed), 0u);
+    EXPECT_EQ(Count(covering.strip.failed), 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cages, UVRasterOnMesh,
@@ -171,7 +171,7 @@ TEST(UVRaster, ChartsOfARealAssetHaveNoPinholes) {
     auto const scene = engine::Scene(test::LoadData("../../scenes/spot/spot.obj"));
     auto const covering = CoverAndCheck(scene, 256);
     auto const isCovered = [&](int x, int y) {
-        return covering.band.owner[static_cast<size_t>(y * 256 + x)] >= 0;
+        return covering.strip.owner[static_cast<size_t>(y * 256 + x)] >= 0;
     };
     size_t pinholes = 0;
     for (int y = 1; y < 255; ++y) {
@@ -189,7 +189,7 @@ TEST(UVRaster, CollapsedTextureCoordinatesCoverNothing) {
     for (size_t i = 1; i < scene.uvs.size(); i += 2) scene.uvs[i] = 0.5;
     auto const covering = CoverAndCheck(scene, 32);
     EXPECT_EQ(covering.numHits, 0u);
-    EXPECT_EQ(Count(covering.band.failed), 0u);
+    EXPECT_EQ(Count(covering.strip.failed), 0u);
 }
 
 }  // namespace

@@ -27,12 +27,12 @@ engine::BakeReport MakeReport() {
 }
 
 engine::GaussBonnetAudit AuditOf(Scene const& scene, int size) {
-    auto const refiner = far_ext::CreateRefiner(scene.cage);
     engine::BakeOptions options;
     options.width = options.height = size;
     auto const report = MakeReport();
-    auto const audits =
-        engine::AuditGaussBonnet(engine::AuditInput(scene, *refiner, options, report));
+    engine::Job const job;
+    auto const audits = engine::AuditGaussBonnet(
+        engine::AuditInput(engine::Model::Build(scene), options, report, job));
     EXPECT_EQ(audits.size(), 1u);
     return audits.at(0);
 }
@@ -167,11 +167,11 @@ TEST(GaussBonnet, HoldsOnLoopSurfaces) {
     }
     Scene scene = test::MakeScene(std::move(positions), faces, Sdc::SCHEME_LOOP);
     GiveEachFaceACell(scene, 12);
-    auto const refiner = far_ext::CreateRefiner(scene.cage);
     engine::BakeOptions options;
     options.width = options.height = 2400;
     auto const report = MakeReport();
-    engine::AuditInput const input(scene, *refiner, options, report);
+    engine::Job const job;
+    engine::AuditInput const input(engine::Model::Build(scene), options, report, job);
     EXPECT_EQ(engine::ExtraordinaryDiscs(input, std::vector<char>(faces.size(), 1)).GetNumDiscs(),
               6u);
     auto const audit = engine::AuditGaussBonnet(input).at(0);
@@ -182,14 +182,14 @@ TEST(GaussBonnet, HoldsOnLoopSurfaces) {
 class DiscsOf : public testing::Test {
 protected:
     engine::ExtraordinaryDiscs MakeDiscs(Scene const& scene, int size) {
-        _refiner = far_ext::CreateRefiner(scene.cage);
         _options.width = _options.height = size;
-        _input = std::make_unique<engine::AuditInput>(scene, *_refiner, _options, _report);
+        _input = std::make_unique<engine::AuditInput>(engine::Model::Build(scene), _options,
+                                                      _report, _job);
         return {*_input, std::vector<char>(scene.cage.faceSizes.size(), 1)};
     }
-    std::unique_ptr<Far::TopologyRefiner> _refiner;
     engine::BakeOptions _options;
     engine::BakeReport _report;
+    engine::Job _job;
     std::unique_ptr<engine::AuditInput> _input;
 };
 

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The way from the limit surface to that of another mesh, of the same faces or of these refined.
+
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "engine/bake/maps/map_table.h"
+#include "engine/bake/maps/vector_frame.h"
+#include "engine/scene/subdivision_names.h"
+#include "eval/surface/finer_surface.h"
+#include "far_ext/error.h"
+
+namespace limn::engine {
+
+namespace {
+
+bool HaveSameFaces(far_ext::ControlMesh const& a, far_ext::ControlMesh const& b) {
+    return a.faceVertices == b.faceVertices && a.faceSizes == b.faceSizes;
+}
+
+class DisplacementMap : public Map {
+public:
+    DisplacementMap(MapTraits traits, BakeOptions const& options)
+        : Map(std::move(traits)), _other(*options.against), _frame(options) {}
+
+    void Prepare(BakedSurface const& baked, Job&) override {
+        if (HaveSameFaces(baked.model.GetCage(), _other.GetCage())) return;
+        _finer = eval::FinerSurface::Build(baked.surface, baked.model.GetCage(), _other.GetCage(),
+                                           _other.GetPositions());
+        if (_finer) return;
+        throw Error(ErrorCode::BadMesh,
+                    fmt::format("{}: its faces differ from those of '{}'; `against` needs the same "
+                                "faces and vertices in the same order, or these refined by the "
+                                "same `scheme` ({})",
+                                _other.GetPath(), baked.model.GetPath(),
+                                GetName(baked.model.GetCage().scheme)));
+    }
+
+    std::vector<eval::FaceTree::Values> GetValues() const override {
+        if (_finer) return {};
+        return {{_other.GetPositions(), 3}};
+    }
+
+    std::unique_ptr<MapSampler> MakeSampler() const override {
+        return std::make_unique<Sampler>(*this);
+    }
+
+private:
+    class Sampler : public MapSampler {
+    public:
+        explicit Sampler(DisplacementMap const& map) : _frame(map._frame) {
+            if (map._finer) _finer.emplace(*map._finer);
+        }
+
+        void Start(FaceSamples const& samples) override {
+            if (!_finer) return;
+            _points.resize(samples.s.size());
+            _finer->Evaluate(samples.face, samples.domain, samples.s, samples.t, _points);
+        }
+
+        void Evaluate(SampleBlock const& block, float* out, size_t outStride) override {
+            for (size_t i = 0; i < block.GetCount(); ++i) {
+                Eigen::Vector3d const there =
+                    _finer ? _points[block.samples[i]] : block.GetValue(0, i);
+                _frame.Put(block, i, there - block.GetVector(eval::kPositionX, i), out, outStride);
+            }
+        }
+
+    private:
+        VectorFrame _frame;
+        std::optional<eval::FinerSurface::Sampler> _finer;
+        std::vector<Eigen::Vector3d> _points;  // on the finer surface, per sample of the face
+    };
+
+    Model _other;
+    VectorFrame _frame;
+    std::optional<eval::FinerSurface> _finer;  // where the other mesh's faces are refined ones
+};
+
+}  // namespace
+
+std::unique_ptr<Map> MakeDisplacementMap(std::string const& name, BakeOptions const& options,
+                                         Model const&) {
+    if (!options.against) {
+        throw Error(ErrorCode::BadOption, "`maps` displacement needs `against` MESH");
+    }
+    MapTraits traits{.name = name, .channels = {"Y"}, .units = "length"};
+    if (options.isVector) {
+        traits.channels = {"R", "G", "B"};
+        traits.range = RangeKind::Vector;
+    }
+    VectorFrame(options).AddNeeds(traits);
+    return std::make_unique<DisplacementMap>(std::move(traits), options);
+}
+
+}  // namespace limn::engine

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/images/colours.h"
+
+namespace limn::engine {
+
+/// An RGB picture, 8 bits a channel, rows from the top.
+class Picture {
+public:
+    /// Dark grey all over.
+    Picture(int width, int height);
+
+    int GetWidth() const { return _width; }
+    int GetHeight() const { return _height; }
+    uint8_t const* GetPixels() const { return _pixels.data(); }  ///< [row][column][3]
+
+    void Set(int x, int y, Colour const& colour);  ///< nothing outside the picture
+    void SetGrey(size_t pixel, uint8_t grey);      ///< pixel = y * width + x
+
+    /// Writes digits and the few letters that numbers need, white, 14 pixels high.
+    void Write(int x, int y, std::string const& text);
+    static int GetTextWidth(std::string const& text) { return 12 * static_cast<int>(text.size()); }
+
+private:
+    int _width, _height;
+    std::vector<uint8_t> _pixels;
+};
+
+}  // namespace limn::engine

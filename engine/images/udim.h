@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+namespace limn::engine {
+
+// UDIM, the numbering of texture tiles: the unit square at column u (0 to 9) and row v (0 and up)
+// of texture space is tile 1001 + u + 10 v.
+
+/// A tile as column and row of texture space.
+struct UdimTile {
+    int u = 0, v = 0;
+
+    constexpr int GetNumber() const { return 1001 + u + 10 * v; }
+};
+
+/// \pre number >= 1001
+constexpr UdimTile ToUdimTile(int number) {
+    return {(number - 1001) % 10, (number - 1001) / 10};
+}
+
+inline constexpr int kMaxUdimRows = 900;  ///< a number has four digits
+
+/// The tile that (u, v) lies in; none outside the range of UDIM.
+inline std::optional<UdimTile> FindUdimTile(double u, double v) {
+    bool const isInRange = u >= 0.0 && u < 10.0 && v >= 0.0 && v < kMaxUdimRows;
+    if (!isInRange) return std::nullopt;  // NaN comes here, too
+    return UdimTile{static_cast<int>(u), static_cast<int>(v)};
+}
+
+/// Paths name the tile by <UDIM> or {udim}.
+bool HasUdimToken(std::string const& pattern);
+std::string ReplaceUdimToken(std::string pattern, int number);
+
+/// `text` with every `token` replaced.
+std::string ReplaceAll(std::string text, std::string const& token, std::string const& value);
+
+}  // namespace limn::engine

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/bake/memory_sink.h"
+
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "engine/bake/bake.h"
+#include "engine/images/exr_lookup.h"
+#include "support/files.h"
+#include "support/meshes.h"
+
+namespace limn {
+namespace {
+
+engine::BakeOptions MakeOptions() {
+    engine::BakeOptions options;
+    options.maps = {"normal", "mean"};
+    options.width = 150;  // no multiple of a tile
+    options.height = 100;
+    options.padding = 5;
+    options.samplesPerSide = 2;
+    options.hasCoverage = true;
+    return options;
+}
+
+// Files and memory go the same road: the same texels, padding and coverage.
+TEST(BakeToMemory, HoldsWhatTheFilesHold) {
+    test::TemporaryFolder const folder;
+    auto const model = engine::Model::Build(test::LoadData("../../scenes/spot/spot.obj"));
+    engine::Job job;
+    auto options = MakeOptions();
+    auto const baked = engine::BakeToMemory(model, options, job);
+    options.pattern = folder / "{map}.<UDIM>.exr";
+    auto const report = engine::Bake(model, options, job);
+    ASSERT_EQ(baked.images.size(), 2u);
+    ASSERT_EQ(report.outputs.size(), 2u);
+    EXPECT_EQ(baked.report.texelsCovered, report.texelsCovered);
+    engine::ExrLookup lookup;
+    size_t numPadded = 0;
+    for (size_t i = 0; i < 2; ++i) {
+        engine::BakedImage const& image = baked.images[i];
+        EXPECT_EQ(image.map, report.outputs[i].map);
+        EXPECT_EQ(baked.report.outputs[i].min, report.outputs[i].min);
+        auto channels = image.channels;
+        channels.push_back("coverage");
+        for (int y = 0; y < image.height; ++y) {
+            for (int x = 0; x < image.width; ++x) {
+                auto const file = lookup.Look(report.outputs[i].path, channels, x, y);
+                size_t const texel = static_cast<size_t>(y * image.width + x);
+                bool hasValue = false;
+                for (size_t c = 0; c < image.channels.size(); ++c) {
+                    float const value = image.texels[texel * image.channels.size() + c];
+                    ASSERT_EQ(value, static_cast<float>(file[c])) << x << " " << y;
+                    hasValue |= value != 0.0f;
+                }
+                ASSERT_EQ(image.coverage[texel], static_cast<float>(file.back()));
+                numPadded += hasValue && image.coverage[texel] == 0.0f;
+            }
+        }
+    }
+    EXPECT_GT(numPadded, 100u);
+}
+
+TEST(BakeToMemory, HasAnImagePerTile) {
+    auto scene = test::MakeTorus(12, 8);
+    for (size_t i = 0; i < scene.uvs.size(); i += 2) scene.uvs[i] *= 2.0;  // two tiles wide
+    auto const model = engine::Model::Build(std::move(scene));
+    engine::BakeOptions options;
+    options.maps = {"position"};
+    options.width = options.height = 32;
+    engine::Job job;
+    auto const baked = engine::BakeToMemory(model, options, job);
+    ASSERT_EQ(baked.images.size(), 2u);
+    EXPECT_EQ(baked.images[0].tile, 1001);
+    EXPECT_EQ(baked.images[1].tile, 1002);
+    EXPECT_EQ(baked.report.tiles, (std::vector<int>{1001, 1002}));
+    for (auto const& image : baked.images) {
+        EXPECT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B"}));
+        EXPECT_EQ(image.texels.size(), 3u * 32 * 32);
+    }
+}
+
+TEST(BakeToMemory, LayersShareAnImageWithoutAMapToken) {
+    auto const model = engine::Model::Build(test::MakeTorus(12, 8));
+    engine::BakeOptions options;
+    options.maps = {"mean", "normal"};
+    options.pattern = "all";
+    options.width = options.height = 16;
+    engine::Job job;
+    auto const baked = engine::BakeToMemory(model, options, job);
+    ASSERT_EQ(baked.images.size(), 1u);
+    EXPECT_EQ(baked.images[0].channels,
+              (std::vector<std::string>{"mean.Y", "normal.R", "normal.G", "normal.B"}));
+}
+
+// Two bakes in one process, each with its own host: the one that is stopped stops, the other goes
+// on.
+TEST(BakeToMemory, StopsOnlyTheJobThatIsAskedTo) {
+    auto const model = engine::Model::Build(test::MakeTorus(24, 16));
+    auto const options = MakeOptions();
+    engine::Job stopped({.isStopped = [] { return true; }});
+    EXPECT_THROW(engine::BakeToMemory(model, options, stopped), engine::Stopped);
+    engine::Job job;
+    EXPECT_EQ(engine::BakeToMemory(model, options, job).images.size(), 2u);
+}
+
+}  // namespace
+}  // namespace limn

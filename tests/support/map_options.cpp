@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "support/map_options.h"
+
+#include "support/meshes.h"
+
+namespace limn::test {
+
+engine::Model AddColours(engine::Scene scene) {
+    scene.primvars = {{"color", 3, {scene.positions.begin(), scene.positions.end()}}};
+    return engine::Model::Build(std::move(scene));
+}
+
+engine::Model MakeModelWithColours() {
+    return AddColours(MakeTorus(12, 8));
+}
+
+engine::BakeOptions OptionsForAllMaps(engine::Model const& model) {
+    engine::BakeOptions options;
+    options.maps = {"mean",         "gaussian",     "k1",
+                    "k2",           "curvedness",   "shape-index",
+                    "curvature",    "position",     "principal-direction",
+                    "normal",       "displacement", "stretch",
+                    "bands",        "noise",        "field",
+                    "primvar:color"};
+    std::vector<double> swollen = model.GetPositions();
+    for (double& x : swollen) x *= 1.25;
+    options.against = model.WithPoints(std::move(swollen));
+    options.field.emplace();
+    options.field->values.assign(static_cast<size_t>(model.GetLevel().GetNumEdges()), 0.0);
+    for (size_t edge = 0; edge < options.field->values.size(); ++edge) {
+        options.field->values[edge] = static_cast<double>(edge % 7) - 3.0;
+    }
+    options.noise.octaves = 2;
+    return options;
+}
+
+}  // namespace limn::test
