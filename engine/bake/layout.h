@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/bake/bake_options.h"
 #include "engine/bake/maps/map.h"
 
 namespace limn::engine {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/bake/channel_group.h"
+#include "engine/bake/maps/channel_group.h"
 
 namespace limn::engine {
 

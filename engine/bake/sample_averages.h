@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/bake/channel_group.h"
+#include "engine/bake/maps/channel_group.h"
 #include "engine/bake/strip.h"
 
 namespace limn::engine {

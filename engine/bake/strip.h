@@ -6,7 +6,7 @@
 #include <mutex>
 #include <vector>
 
-#include "engine/bake/uv_raster.h"
+#include "engine/bake/raster/uv_raster.h"
 #include "engine/images/exr_writer.h"
 #include "far_ext/rows/large_array.h"
 

@@ -104,7 +104,7 @@ StripBaker::StripBaker(Model const& model, BakeOptions const& options,
       _job(job),
       _surface(model.GetRefiner()),
       _uvSurface(model.GetRefiner(), FindUVChannel(model)),
-      _baked{model, _surface, _uvSurface, _isBaked, options},
+      _baked{model, _surface, _uvSurface, _isBaked, options.width, options.height},
       _hasTexels(model.GetCage().faceSizes.size()) {
     FindBakedFaces();
     for (auto const& map : maps) map->Prepare(_baked, job);

@@ -8,9 +8,10 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include "engine/bake/bake_options.h"
 #include "engine/bake/bake_report.h"
-#include "engine/bake/face_bins.h"
 #include "engine/bake/maps/map.h"
+#include "engine/bake/raster/face_bins.h"
 #include "engine/bake/sample_averages.h"
 #include "engine/bake/strip.h"
 #include "eval/surface/surface_sampler.h"

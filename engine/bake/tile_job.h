@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/bake/bake_options.h"
 #include "engine/bake/strip_baker.h"
 #include "engine/bake/strip_packer.h"
 #include "engine/bake/texel_sink.h"

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
@@ -10,29 +8,16 @@
 
 #include <gtest/gtest.h>
 
+#include "support/source_tree.h"
+
 namespace limn {
 namespace {
 
 namespace fs = std::filesystem;
+using test::ListFiles;
+using test::ReadText;
 
-fs::path const kRoot = LIMN_SOURCE_DIR;
-
-std::string ReadText(fs::path const& path) {
-    std::ifstream file(path);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// All files of the folders with one of the extensions, sorted.
-std::set<fs::path> ListFiles(std::vector<std::string> const& folders,
-                             std::set<std::string> const& extensions) {
-    std::set<fs::path> files;
-    for (std::string const& folder : folders) {
-        for (auto const& entry : fs::recursive_directory_iterator(kRoot / folder)) {
-            if (extensions.count(entry.path().extension().string())) files.insert(entry.path());
-        }
-    }
-    return files;
-}
+fs::path const& kRoot = test::kSourceRoot;
 
 std::set<fs::path> ListSources() {
     return ListFiles({"far_ext", "eval", "engine", "tests", "bench", "examples"},

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/bake/bake.h"
-#include "engine/bake/uv_raster.h"
+#include "engine/bake/raster/uv_raster.h"
 #include "eval/surface/limit_surface.h"
 
 namespace limn::engine {

@@ -10,7 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include "engine/bake/audit/extraordinary_discs.h"
-#include "engine/bake/face_bins.h"
+#include "engine/bake/raster/face_bins.h"
 #include "eval/surface/face_places.h"
 #include "eval/surface/surface_sampler.h"
 #include "far_ext/topology/face_components.h"

@@ -18,63 +18,92 @@ namespace {
 
 using Level = Far::TopologyLevel;
 
-SeamAudit AuditSeamsOf(AuditInput const& input, MapTraits const& map,
-                       std::vector<std::string> const& channels,
-                       std::map<int, std::string> const& pathOfTile) {
-    Level const& level = input.level;
+/// Compares one map along all seams.
+class SeamAuditor {
+public:
+    SeamAuditor(AuditInput const& input, std::vector<std::string> const& channels,
+                std::map<int, std::string> const& pathOfTile)
+        : _input(input),
+          _channels(channels),
+          _pathOfTile(pathOfTile),
+          _raster(input.uvSurface, input.model.GetUVs()) {}
+
+    SeamAudit Run(MapTraits const& map);
+
+private:
+    /// Values at places along one side of a seam; empty where a place has no tile.
+    using Values = std::vector<std::vector<double>>;
+    Values LookAlong(Index face, int corner, bool isReversed);
+    bool IsSeam(Index edge, MapTraits const& map) const;
+
+    AuditInput const& _input;
+    std::vector<std::string> const& _channels;
+    std::map<int, std::string> const& _pathOfTile;
+    UVRaster _raster;
+    ExrLookup _lookup;
+};
+
+SeamAuditor::Values SeamAuditor::LookAlong(Index face, int corner, bool isReversed) {
+    constexpr int kPlaces = 8;
+    int const faceSize = _input.level.GetFaceVertices(face).size();
+    Values values;
+    _raster.Bind(face);
+    for (int k = 0; k < kPlaces; ++k) {
+        double const tau = (k + 0.5) / kPlaces;
+        auto const [domain, s, t] = eval::GetEdgePlace(_input.uvSurface, face, faceSize, corner,
+                                                       isReversed ? 1.0 - tau : tau);
+        auto const [u, v] = _raster.Evaluate(domain, s, t);
+        // A seam on a tile's border belongs to the tile its face lies in: look a hair inside.
+        auto const [insideU, insideV] =
+            _raster.Evaluate(domain, 0.01 * 0.5 + 0.99 * s, 0.01 * 0.5 + 0.99 * t);
+        values.emplace_back();
+        auto const tile = FindUdimTile(insideU, insideV);
+        auto const path = tile ? _pathOfTile.find(tile->GetNumber()) : _pathOfTile.end();
+        if (path == _pathOfTile.end()) continue;
+        TileGrid const grid = _input.MakeGrid(path->first);
+        values.back() = _lookup.Look(path->second, _channels, grid.ToX(u), grid.ToY(v));
+    }
+    return values;
+}
+
+bool SeamAuditor::IsSeam(Index edge, MapTraits const& map) const {
+    auto const faces = _input.level.GetEdgeFaces(edge);
+    if (faces.size() != 2 || _input.level.DoesEdgeFVarTopologyMatch(edge, 0)) return false;
+    if (!_input.isBaked[faces[0]] || !_input.isBaked[faces[1]] || faces[0] == faces[1]) {
+        return false;
+    }
+    // Across an infinitely sharp edge each side rightly has its own normal and curvature.
+    return !_input.level.IsEdgeInfSharp(edge) || map.isSameAcrossCreases;
+}
+
+double FindDistance(std::vector<double> const& a, std::vector<double> const& b) {
+    double sum = 0.0;
+    for (size_t c = 0; c < a.size(); ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
+    return std::sqrt(sum);
+}
+
+SeamAudit SeamAuditor::Run(MapTraits const& map) {
+    Level const& level = _input.level;
     SeamAudit audit;
     audit.map = map.name;
-    ExrLookup lookup;
-    UVRaster raster(input.uvSurface, input.model.GetUVs());
     std::vector<double> differences;
-    // Values of one side of a seam at a few places along it; empty where the place has no tile.
-    constexpr int kPlaces = 8;
-    auto const lookAlong = [&](Index face, int corner, bool isReversed) {
-        std::vector<std::vector<double>> values;
-        raster.Bind(face);
-        for (int k = 0; k < kPlaces; ++k) {
-            double const tau = (k + 0.5) / kPlaces;
-            auto const place =
-                eval::GetEdgePlace(input.uvSurface, face, level.GetFaceVertices(face).size(),
-                                   corner, isReversed ? 1.0 - tau : tau);
-            auto const [u, v] = raster.Evaluate(place.domain, place.s, place.t);
-            // A seam on a tile's border belongs to the tile its face lies in: look a hair inside.
-            auto const [cu, cv] = raster.Evaluate(place.domain, 0.01 * 0.5 + 0.99 * place.s,
-                                                  0.01 * 0.5 + 0.99 * place.t);
-            auto const inside = FindUdimTile(cu, cv);
-            int const tile = inside ? inside->GetNumber() : 0;
-            auto const path = pathOfTile.find(tile);
-            values.emplace_back();
-            if (path == pathOfTile.end()) continue;
-            TileGrid const grid = input.MakeGrid(tile);
-            values.back() = lookup.Look(path->second, channels, grid.ToX(u), grid.ToY(v));
-        }
-        return values;
-    };
     for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+        if (!IsSeam(edge, map)) continue;
+        _input.job.CheckStopped();
         auto const faces = level.GetEdgeFaces(edge);
-        if (faces.size() != 2 || level.DoesEdgeFVarTopologyMatch(edge, 0)) continue;
-        if (!input.isBaked[faces[0]] || !input.isBaked[faces[1]] || faces[0] == faces[1]) continue;
-        // Across an infinitely sharp edge each side rightly has its own normal and curvature.
-        if (level.IsEdgeInfSharp(edge) && !map.isSameAcrossCreases) continue;
-        input.job.CheckStopped();
         auto const locals = level.GetEdgeFaceLocalIndices(edge);
-        auto const a = lookAlong(faces[0], locals[0], false),
-                   b = lookAlong(faces[1], locals[1], true);
-        for (int k = 0; k < kPlaces; ++k) {
+        auto const a = LookAlong(faces[0], locals[0], false),
+                   b = LookAlong(faces[1], locals[1], true);
+        for (size_t k = 0; k < a.size(); ++k) {
             if (a[k].empty() || b[k].empty()) continue;
-            double sum = 0.0;
-            for (size_t c = 0; c < channels.size(); ++c)
-                sum += (a[k][c] - b[k][c]) * (a[k][c] - b[k][c]);
-            double const difference = std::sqrt(sum);
-            if (difference >= audit.max) {
-                auto const ends = level.GetEdgeVertices(edge);
-                audit.max = difference;
-                audit.place =
-                    fmt::format("edge {} {} between {} and {}", ends[0], ends[1],
-                                input.model.NameFace(faces[0]), input.model.NameFace(faces[1]));
-            }
+            double const difference = FindDistance(a[k], b[k]);
             differences.push_back(difference);
+            if (difference < audit.max) continue;
+            auto const ends = level.GetEdgeVertices(edge);
+            audit.max = difference;
+            audit.place =
+                fmt::format("edge {} {} between {} and {}", ends[0], ends[1],
+                            _input.model.NameFace(faces[0]), _input.model.NameFace(faces[1]));
         }
     }
     audit.samples = differences.size();
@@ -113,7 +142,7 @@ std::vector<SeamAudit> AuditSeams(AuditInput const& input) {
             auto const channels = ListComparable(file, map, first);
             first += map.GetNumChannels();
             if (channels.empty()) continue;
-            audits.push_back(AuditSeamsOf(input, map, channels, found->second));
+            audits.push_back(SeamAuditor(input, channels, found->second).Run(map));
         }
     }
     return audits;

@@ -16,7 +16,7 @@ namespace {
 
 class BandsMap : public Map {
 public:
-    BandsMap(MapTraits traits, BakeOptions const& options)
+    BandsMap(MapTraits traits, MapOptions const& options)
         : Map(std::move(traits)), _numBands(options.bands), _frame(options) {}
 
     void Prepare(BakedSurface const& baked, Job&) override {
@@ -64,7 +64,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Map> MakeBandsMap(std::string const& name, BakeOptions const& options,
+std::unique_ptr<Map> MakeBandsMap(std::string const& name, MapOptions const& options,
                                   Model const&) {
     MapTraits traits{.name = name, .units = "length"};
     for (int band = 1; band <= options.bands; ++band) {

@@ -59,7 +59,7 @@ constexpr Row kRows[] = {
 
 }  // namespace
 
-std::unique_ptr<Map> MakeCurvatureMap(std::string const& name, BakeOptions const&, Model const&) {
+std::unique_ptr<Map> MakeCurvatureMap(std::string const& name, MapOptions const&, Model const&) {
     Row const& row = *std::find_if(std::begin(kRows), std::end(kRows),
                                    [&](Row const& r) { return name == r.name; });
     MapTraits traits{.name = name, .channels = {"Y"}, .units = row.units, .range = row.range};

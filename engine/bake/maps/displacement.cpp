@@ -22,7 +22,7 @@ bool HaveSameFaces(far_ext::ControlMesh const& a, far_ext::ControlMesh const& b)
 
 class DisplacementMap : public Map {
 public:
-    DisplacementMap(MapTraits traits, BakeOptions const& options)
+    DisplacementMap(MapTraits traits, MapOptions const& options)
         : Map(std::move(traits)), _other(*options.against), _frame(options) {}
 
     void Prepare(BakedSurface const& baked, Job&) override {
@@ -81,7 +81,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Map> MakeDisplacementMap(std::string const& name, BakeOptions const& options,
+std::unique_ptr<Map> MakeDisplacementMap(std::string const& name, MapOptions const& options,
                                          Model const&) {
     if (!options.against) {
         throw Error(ErrorCode::BadOption, "`maps` displacement needs `against` MESH");

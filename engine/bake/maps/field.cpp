@@ -17,14 +17,15 @@ namespace limn::engine {
 namespace {
 
 /// So deep that a refined face is 1 to 2 texels wide, or that there are a million.
-int ChooseLevels(Model const& model, BakeOptions const& options) {
+int ChooseLevels(BakedSurface const& baked) {
+    Model const& model = baked.model;
     double const numFaces = std::max<double>(1.0, model.GetCage().GetNumFaces());
     std::set<std::pair<double, double>> tiles;
     for (size_t i = 0; i < model.GetUVs().size(); i += 2) {
         tiles.emplace(std::floor(model.GetUVs()[i]), std::floor(model.GetUVs()[i + 1]));
     }
     double const texels =
-        static_cast<double>(options.width) * options.height * static_cast<double>(tiles.size());
+        static_cast<double>(baked.width) * baked.height * static_cast<double>(tiles.size());
     int levels = 0;
     double refined = numFaces;
     while (levels < 8 && 4.0 * refined < texels && 4.0 * refined < 1e6) {
@@ -49,13 +50,13 @@ Eigen::Vector2d FindFlow(SampleBlock const& block, size_t i, Eigen::Vector3d con
 
 class FieldMap : public Map {
 public:
-    FieldMap(MapTraits traits, BakeOptions const& options)
+    FieldMap(MapTraits traits, MapOptions const& options)
         : Map(std::move(traits)), _options(options) {}
 
     void Prepare(BakedSurface const& baked, Job&) override {
-        _field = std::make_unique<eval::FieldSurface>(
-            baked.model.GetCage(), baked.model.GetPositions(), _options.field->values,
-            ChooseLevels(baked.model, _options));
+        _field =
+            std::make_unique<eval::FieldSurface>(baked.model.GetCage(), baked.model.GetPositions(),
+                                                 _options.field->values, ChooseLevels(baked));
     }
 
     std::unique_ptr<MapSampler> MakeSampler() const override {
@@ -93,13 +94,13 @@ private:
         std::vector<Eigen::Vector3d> _vectors;  // per sample of the face
     };
 
-    BakeOptions const& _options;
+    MapOptions const& _options;
     std::unique_ptr<eval::FieldSurface> _field;
 };
 
 }  // namespace
 
-std::unique_ptr<Map> MakeFieldMap(std::string const& name, BakeOptions const& options,
+std::unique_ptr<Map> MakeFieldMap(std::string const& name, MapOptions const& options,
                                   Model const&) {
     if (!options.field) {
         throw Error(ErrorCode::BadOption,

@@ -9,8 +9,8 @@
 
 #include <Eigen/Core>
 
-#include "engine/bake/bake_options.h"
-#include "engine/bake/channel_group.h"
+#include "engine/bake/maps/channel_group.h"
+#include "engine/bake/maps/map_options.h"
 #include "engine/scene/job.h"
 #include "eval/surface/limit_surface.h"
 #include "eval/surface/surface_kernel.h"
@@ -63,7 +63,7 @@ struct BakedSurface {
     eval::LimitSurface const& surface;
     eval::LimitSurface const& uvSurface;
     std::vector<char> const& isBaked;  ///< per face
-    BakeOptions const& options;
+    int width, height;                 ///< texels of a tile
 };
 
 /// Samples of one domain of a face: the texels it covers.

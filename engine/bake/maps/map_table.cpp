@@ -48,7 +48,7 @@ std::string ListMapNames() {
     return names;
 }
 
-std::vector<std::unique_ptr<Map>> MakeMaps(BakeOptions const& options, Model const& model) {
+std::vector<std::unique_ptr<Map>> MakeMaps(MapOptions const& options, Model const& model) {
     std::vector<std::unique_ptr<Map>> maps;
     for (std::string const& name : options.maps) {
         if (std::any_of(maps.begin(), maps.end(),

@@ -12,26 +12,26 @@ namespace limn::engine {
 /// Makes a map of this name, from what a bake is asked for.
 ///
 /// \throws Error  BadOption where something the map needs is missing, or contradicts it
-using MakeMap = std::unique_ptr<Map> (*)(std::string const& name, BakeOptions const& options,
+using MakeMap = std::unique_ptr<Map> (*)(std::string const& name, MapOptions const& options,
                                          Model const& model);
 
 /// The maps that options.maps names, in that order.
 ///
 /// \throws Error  BadOption: an unknown name (listing the maps there are), one twice, none; as
 /// MakeMap
-std::vector<std::unique_ptr<Map>> MakeMaps(BakeOptions const& options, Model const& model);
+std::vector<std::unique_ptr<Map>> MakeMaps(MapOptions const& options, Model const& model);
 
 /// "mean, gaussian, ..., primvar:NAME"
 std::string ListMapNames();
 
 // One maker per room of this folder.
-std::unique_ptr<Map> MakeCurvatureMap(std::string const&, BakeOptions const&, Model const&);
-std::unique_ptr<Map> MakeVectorMap(std::string const&, BakeOptions const&, Model const&);
-std::unique_ptr<Map> MakeDisplacementMap(std::string const&, BakeOptions const&, Model const&);
-std::unique_ptr<Map> MakeStretchMap(std::string const&, BakeOptions const&, Model const&);
-std::unique_ptr<Map> MakeBandsMap(std::string const&, BakeOptions const&, Model const&);
-std::unique_ptr<Map> MakeNoiseMap(std::string const&, BakeOptions const&, Model const&);
-std::unique_ptr<Map> MakeFieldMap(std::string const&, BakeOptions const&, Model const&);
-std::unique_ptr<Map> MakePrimvarMap(std::string const&, BakeOptions const&, Model const&);
+std::unique_ptr<Map> MakeCurvatureMap(std::string const&, MapOptions const&, Model const&);
+std::unique_ptr<Map> MakeVectorMap(std::string const&, MapOptions const&, Model const&);
+std::unique_ptr<Map> MakeDisplacementMap(std::string const&, MapOptions const&, Model const&);
+std::unique_ptr<Map> MakeStretchMap(std::string const&, MapOptions const&, Model const&);
+std::unique_ptr<Map> MakeBandsMap(std::string const&, MapOptions const&, Model const&);
+std::unique_ptr<Map> MakeNoiseMap(std::string const&, MapOptions const&, Model const&);
+std::unique_ptr<Map> MakeFieldMap(std::string const&, MapOptions const&, Model const&);
+std::unique_ptr<Map> MakePrimvarMap(std::string const&, MapOptions const&, Model const&);
 
 }  // namespace limn::engine

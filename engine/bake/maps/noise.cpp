@@ -14,7 +14,7 @@ namespace {
 
 class NoiseMap : public Map {
 public:
-    NoiseMap(MapTraits traits, BakeOptions const& options)
+    NoiseMap(MapTraits traits, MapOptions const& options)
         : Map(std::move(traits)), _options(options) {}
 
     void Prepare(BakedSurface const& baked, Job&) override {
@@ -64,13 +64,13 @@ private:
         std::vector<double> _values;  // per sample of the face
     };
 
-    BakeOptions const& _options;
+    MapOptions const& _options;
     std::unique_ptr<SurfaceNoise> _noise;
 };
 
 }  // namespace
 
-std::unique_ptr<Map> MakeNoiseMap(std::string const& name, BakeOptions const& options,
+std::unique_ptr<Map> MakeNoiseMap(std::string const& name, MapOptions const& options,
                                   Model const&) {
     MapTraits traits{.name = name, .channels = {"Y"}, .units = "amplitude"};
     if (options.isNormalized) {

@@ -47,7 +47,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Map> MakePrimvarMap(std::string const& name, BakeOptions const&,
+std::unique_ptr<Map> MakePrimvarMap(std::string const& name, MapOptions const&,
                                     Model const& model) {
     std::string const wanted = name.substr(name.find(':') + 1);
     auto const primvar = std::find_if(model.GetPrimvars().begin(), model.GetPrimvars().end(),

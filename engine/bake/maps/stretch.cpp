@@ -12,7 +12,7 @@
 
 #include "engine/bake/maps/map_table.h"
 #include "engine/bake/maps/portable_math.h"
-#include "engine/bake/uv_raster.h"
+#include "engine/bake/raster/uv_raster.h"
 #include "eval/surface/face_places.h"
 #include "eval/surface/surface_sample.h"
 
@@ -113,7 +113,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Map> MakeStretchMap(std::string const& name, BakeOptions const&, Model const&) {
+std::unique_ptr<Map> MakeStretchMap(std::string const& name, MapOptions const&, Model const&) {
     MapTraits traits{.name = name, .channels = {"Y"}, .units = "log2"};
     traits.quantity = eval::Quantity::Tangents;
     traits.needsJacobian = true;

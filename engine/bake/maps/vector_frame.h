@@ -8,7 +8,7 @@ namespace limn::engine {
 /// How a displacement is written: along the normal, or as a vector in object or tangent space.
 class VectorFrame {
 public:
-    explicit VectorFrame(BakeOptions const& options)
+    explicit VectorFrame(MapOptions const& options)
         : _isVector(options.isVector), _isTangent(options.space == VectorSpace::Tangent) {}
 
     size_t GetNumChannels() const { return _isVector ? 3 : 1; }

@@ -6,7 +6,7 @@
 
 namespace limn::engine {
 
-std::unique_ptr<Map> MakeVectorMap(std::string const& name, BakeOptions const&, Model const&) {
+std::unique_ptr<Map> MakeVectorMap(std::string const& name, MapOptions const&, Model const&) {
     MapTraits traits{.name = name, .channels = {"R", "G", "B"}, .units = "unit vector"};
     if (name == "position") {
         traits.units = "length";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/bake/texture_piece.h"
+#include "engine/bake/raster/texture_piece.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/bake/uv_raster.h"
+#include "engine/bake/raster/uv_raster.h"
 
 #include <cmath>
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/bake/texture_piece.h"
+#include "engine/bake/raster/texture_piece.h"
 #include "engine/images/udim.h"
 #include "eval/surface/inversion_kernel.h"
 #include "eval/surface/limit_surface.h"

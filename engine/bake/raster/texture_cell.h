@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "engine/bake/texture_piece.h"
+#include "engine/bake/raster/texture_piece.h"
 #include "eval/surface/inversion_kernel.h"
 
 namespace limn::engine {

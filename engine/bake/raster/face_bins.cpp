@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/bake/face_bins.h"
+#include "engine/bake/raster/face_bins.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/bake/texture_cell.h"
+#include "engine/bake/raster/texture_cell.h"
 
 #include <algorithm>
 #include <cmath>

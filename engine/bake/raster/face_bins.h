@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/bake/uv_raster.h"
+#include "engine/bake/raster/uv_raster.h"
 
 namespace limn::engine {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/bake/uv_raster.h"
+#include "engine/bake/raster/uv_raster.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "engine/bake/texture_cell.h"
+#include "engine/bake/raster/texture_cell.h"
 #include "eval/surface/patch_polynomial.h"
 #include "eval/surface/surface_sample.h"
 
