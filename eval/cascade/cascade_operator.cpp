@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "eval/cascade/cascade_kernel.h"
+#include "eval/kernels/dispatch.h"
 
 namespace limn::eval {
 
@@ -24,7 +25,8 @@ struct BlockShapes {
 template <class Scalar>
 BlockShapes BuildBlock(CascadeLevel const& level, CascadeBuildJob<Scalar> const& job, Index begin,
                        Index end) {
-    auto const [maxCotangent, minArea] = BuildCascadeRows(job, begin, end);
+    CascadeFunctions<Scalar> const& kernel = GetKernel<CascadeKernel>();
+    auto const [maxCotangent, minArea] = kernel.buildRows(job, begin, end);
     BlockShapes shapes{static_cast<double>(maxCotangent), static_cast<double>(minArea)};
     end = std::min(end, level.numSurface);
     for (Index row = begin; row < end; ++row)
@@ -66,6 +68,11 @@ MetricQuality Build(CascadeLevel const& level, CascadeRows<Scalar> const& metric
 }
 
 }  // namespace
+
+CascadeRings GetRings(CascadeLevel const& level) {
+    return {level.offsets.data(), level.neighbours.data(), level.faceSize, level.numClosed,
+            level.numSurface};
+}
 
 MetricQuality BuildOperator(CascadeLevel const& level, CascadeRows<float> const& metric,
                             float width, CascadeOperator<float>& op) {

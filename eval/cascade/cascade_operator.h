@@ -9,6 +9,8 @@
 
 namespace limn::eval {
 
+struct CascadeRings;
+
 /// Position and filter width of a row: x, y, z, sigma.
 template <class Scalar>
 using CascadeRow = Eigen::Array<Scalar, 4, 1>;
@@ -41,6 +43,9 @@ struct CascadeOperator {
     far_ext::LargeArray<Scalar>
         diagonals;  ///< M_ii + L_ii, per unknown; 0 where nothing moves a row: X = X0 there
 };
+
+/// The level's rings as kernels take them.
+CascadeRings GetRings(far_ext::CascadeLevel const& level);
 
 /// Builds the operator from a metric, on the calling arena's threads.
 ///
