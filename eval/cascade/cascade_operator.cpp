@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "eval/cascade/cascade_kernel.h"
 #include "eval/kernels/dispatch.h"
+#include "eval/parallel/rows.h"
 
 namespace limn::eval {
 
@@ -50,9 +50,8 @@ MetricQuality Build(CascadeLevel const& level, CascadeRows<Scalar> const& metric
     CascadeBuildJob<Scalar> const job{
         GetRings(level), metric.data()->data(), width < Scalar(0),  Scalar(0.5) * width * width,
         op.edges.data(), op.masses.data(),      op.diagonals.data()};
-    std::vector<BlockShapes> blocks(static_cast<size_t>(level.numUnknowns / kRowsPerBlock) + 1);
-    ForEachBlock(level.numUnknowns, [&](Index begin, Index end, size_t block) {
-        blocks[block] = BuildBlock(level, job, begin, end);
+    auto const blocks = MapBlocks(level.numUnknowns, kRowsPerBlock, [&](Index begin, Index end) {
+        return BuildBlock(level, job, begin, end);
     });
     BlockShapes all;
     for (BlockShapes const& block : blocks) {

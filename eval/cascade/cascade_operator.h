@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 
-#include "eval/parallel/row_blocks.h"
 #include "far_ext/cascade/cascade_level.h"
 #include "far_ext/rows/large_array.h"
 

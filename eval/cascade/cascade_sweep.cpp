@@ -28,7 +28,7 @@ CascadeFunctions<Scalar> const& GetFunctions() {
 
 template <class Scalar>
 void Sweep(CascadeLevel const& level, CascadeSweepJob<Scalar> const& job) {
-    ForEachBlock(level.numUnknowns, [&](Index begin, Index end, size_t) {
+    ForEachBlock(level.numUnknowns, kRowsPerBlock, [&](Index begin, Index end) {
         GetFunctions<Scalar>().sweepRows(job, begin, end);
     });
 }
@@ -47,7 +47,7 @@ void SweepAll(CascadeLevel const& level, CascadeOperator<Scalar> const& op,
             Sweep(level, jobs[0]);
         } else {
             RunStepsInOnePass(static_cast<Index>(jobs.size()), level.numUnknowns, level.bandwidth,
-                              [&](Index step, Index begin, Index end, size_t) {
+                              [&](Index step, Index begin, Index end) {
                                   GetFunctions<Scalar>().sweepRows(jobs[step], begin, end);
                               });
         }

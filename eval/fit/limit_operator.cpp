@@ -6,7 +6,7 @@
 #include <iterator>
 #include <limits>
 
-#include "eval/parallel/row_blocks.h"
+#include "eval/parallel/rows.h"
 #include "far_ext/error.h"
 #include "far_ext/rows/breadth_first.h"
 
@@ -182,7 +182,7 @@ LimitOperator LimitOperator::Reorder(std::vector<Index>& vertices) const {
 
 void LimitOperator::Apply(std::span<double const> x, int length, std::span<double> y) const {
     WithLength(length, [&]<int Length>() {
-        ForEachChunk(GetNumVertices(), [&](Index begin, Index end) {
+        ForEachBlock(GetNumVertices(), kRowsPerBlock, [&](Index begin, Index end) {
             using Row = DoubleRow<Length>;
             ForEachRow<Row>(begin, end, Stage::Fixed, x.data(),
                             [&](Index row, RowClass const&, Row const&, Row const& limit) {

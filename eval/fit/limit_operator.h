@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "eval/fit/value_row.h"
-#include "eval/parallel/chunks.h"
 #include "far_ext/limit/limit_row.h"
 
 namespace limn::eval {

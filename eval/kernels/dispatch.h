@@ -20,8 +20,8 @@ namespace limn::eval {
 //         LIMN_KERNEL is sse2, avx2 or avx512, LIMN_KERNEL_LANES the floats of its registers. It
 //         is a line of KERNELS in its floor's CMakeLists.txt.
 // Caller  GetKernel<XKernel>().evaluate(job, begin, end);
-// Bits    The same at every width: no contraction, no library calls, sums in a fixed order, choices
-//         as plain ternaries.
+// Bits    The same at every width, [Limit 11]: no contraction, no library calls, sums in a fixed
+//         order, choices as plain ternaries.
 // Linker  Of equal inline functions a linker keeps one, wherever it was compiled: one from an
 //         avx512 object could end up in the code that other CPUs run. So a kernel's object defines
 //         its table and nothing else that is seen outside: it uses no inline function and no
