@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "engine/images/pixel_kernel.h"
+#include "eval/kernels/dispatch.h"
 
 namespace limn::engine {
 
@@ -104,7 +105,7 @@ void PaddingSearch::FindInColumns(Window const& inner, Window const& outer) {
     }
 }
 
-/// The row search for radii whose distances fit FindNearest's keys.
+/// The row search for radii whose distances fit findNearest's keys.
 void PaddingSearch::FindInRowFast(int32_t const* dy, int count, int32_t* out) {
     bool isAnyNear = false, isAllCovered = true;
     for (int x = -_radius; x < count + _radius; ++x) isAnyNear |= dy[x] != kFarRow;
@@ -116,7 +117,8 @@ void PaddingSearch::FindInRowFast(int32_t const* dy, int count, int32_t* out) {
     if (!isAnyNear) return;
     int32_t const none = (_radius * _radius + 1) * 65536;
     _best.assign(static_cast<size_t>(count), none);
-    FindNearest(dy, _best.data(), static_cast<size_t>(count), _radius);
+    eval::GetKernel<PixelKernel>().findNearest(dy, _best.data(), static_cast<size_t>(count),
+                                               _radius);
     for (int x = 0; x < count; ++x) {
         int32_t const key = _best[static_cast<size_t>(x)];
         out[x] = key < none ? PackOffset((key & 255) - 128, ((key >> 8) & 255) - 128) : out[x];

@@ -10,6 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include "engine/images/pixel_kernel.h"
+#include "eval/kernels/dispatch.h"
 #include "far_ext/error.h"
 
 namespace limn::engine {
@@ -228,8 +229,8 @@ void StripBaker::FinishBlock(Strip& strip, int firstColumn, int numColumns) {
             for (size_t i = 0; i < count; ++i) _newtonFailures += failed[i] && !covered[i];
         }
         for (int plane = 0; numCovered > 0 && plane < _numPlanes; ++plane) {
-            FindRange(strip.GetPlane(plane) + at, covered, count, &strip.low[plane],
-                      &strip.high[plane]);
+            eval::GetKernel<PixelKernel>().findRange(strip.GetPlane(plane) + at, covered, count,
+                                                     &strip.low[plane], &strip.high[plane]);
         }
     }
 }

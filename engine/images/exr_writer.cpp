@@ -16,6 +16,7 @@
 #include <libdeflate.h>
 
 #include "engine/images/pixel_kernel.h"
+#include "eval/kernels/dispatch.h"
 #include "far_ext/error.h"
 
 namespace limn::engine {
@@ -225,9 +226,10 @@ ExrTile ExrWriter::Pack(int level, int x, int y, float const* const* planes, siz
     size_t const w = static_cast<size_t>(width), h = static_cast<size_t>(height);
     size_t const wordsPerRow = numWords / h;
     uint16_t* to = scratch.words.data();
+    PixelKernel const& kernel = eval::GetKernel<PixelKernel>();
     for (int channel : _sortedChannels) {
         if (_spec.isHalf) {
-            tile.numClamped += ConvertToHalf(planes[channel], stride, to, wordsPerRow, w, h);
+            tile.numClamped += kernel.convertToHalf(planes[channel], stride, to, wordsPerRow, w, h);
             to += w;
         } else {
             for (size_t row = 0; row < h; ++row) {
@@ -244,7 +246,8 @@ ExrTile ExrWriter::Pack(int level, int x, int y, float const* const* planes, siz
     }
     scratch.split.resize(numBytes);
     scratch.predicted.resize(numBytes);
-    SplitAndPredict(scratch.words.data(), numWords, scratch.split.data(), scratch.predicted.data());
+    kernel.splitAndPredict(scratch.words.data(), numWords, scratch.split.data(),
+                           scratch.predicted.data());
     if (!scratch.compressor) scratch.compressor = libdeflate_alloc_compressor(kDeflateLevel);
     tile.bytes.resize(numBytes);
     // A chunk that does not become smaller is stored as it is, which readers tell by its size.

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "eval/cascade/cascade_solve.h"
+#include "eval/parallel/rows.h"
 #include "far_ext/error.h"
 
 namespace limn::eval {

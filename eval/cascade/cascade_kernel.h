@@ -3,10 +3,6 @@
 
 #include "far_ext/types.h"
 
-namespace limn::far_ext {
-struct CascadeLevel;
-}
-
 namespace limn::eval {
 
 /// A level's rings as plain pointers, see far_ext::CascadeLevel.
@@ -16,8 +12,6 @@ struct CascadeRings {
     int faceSize;
     Index numClosed, numSurface;
 };
-
-CascadeRings GetRings(far_ext::CascadeLevel const& level);
 
 /// Where the operator of a level goes and what it is made from, see CascadeOperator. Rows of a
 /// metric are 4 Scalars.
@@ -46,16 +40,19 @@ struct CascadeSweepJob {
     Scalar* to;
 };
 
-/// The operator's rows begin..end-1.
-///
-/// The same bits on every CPU and whichever ranges the work is cut into: one source, compiled per
-/// instruction set without contraction; rows lie side by side in registers and no sum crosses rows.
-CascadeShapes<float> BuildCascadeRows(CascadeBuildJob<float> const& job, Index begin, Index end);
-CascadeShapes<double> BuildCascadeRows(CascadeBuildJob<double> const& job, Index begin, Index end);
+template <class Scalar>
+struct CascadeFunctions {
+    /// The operator's rows begin..end-1.
+    CascadeShapes<Scalar> (*buildRows)(CascadeBuildJob<Scalar> const& job, Index begin, Index end);
 
-/// Rows begin..end-1 of a sweep; the same bits likewise. Entries of a ring are added as
-/// FindResidual adds them.
-void SweepCascadeRows(CascadeSweepJob<float> const& job, Index begin, Index end);
-void SweepCascadeRows(CascadeSweepJob<double> const& job, Index begin, Index end);
+    /// Rows begin..end-1 of a sweep. Entries of a ring are added as FindResidual adds them.
+    void (*sweepRows)(CascadeSweepJob<Scalar> const& job, Index begin, Index end);
+};
+
+/// The same bits on every CPU (see eval/kernels/dispatch.h) and whichever ranges the work is cut
+/// into: no sum crosses rows.
+struct CascadeKernel : CascadeFunctions<float>, CascadeFunctions<double> {
+    static CascadeKernel const sse2, avx2, avx512;
+};
 
 }  // namespace limn::eval

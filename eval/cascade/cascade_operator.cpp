@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "eval/cascade/cascade_kernel.h"
+#include "eval/kernels/dispatch.h"
+#include "eval/parallel/rows.h"
 
 namespace limn::eval {
 
@@ -24,7 +25,8 @@ struct BlockShapes {
 template <class Scalar>
 BlockShapes BuildBlock(CascadeLevel const& level, CascadeBuildJob<Scalar> const& job, Index begin,
                        Index end) {
-    auto const [maxCotangent, minArea] = BuildCascadeRows(job, begin, end);
+    CascadeFunctions<Scalar> const& kernel = GetKernel<CascadeKernel>();
+    auto const [maxCotangent, minArea] = kernel.buildRows(job, begin, end);
     BlockShapes shapes{static_cast<double>(maxCotangent), static_cast<double>(minArea)};
     end = std::min(end, level.numSurface);
     for (Index row = begin; row < end; ++row)
@@ -48,9 +50,8 @@ MetricQuality Build(CascadeLevel const& level, CascadeRows<Scalar> const& metric
     CascadeBuildJob<Scalar> const job{
         GetRings(level), metric.data()->data(), width < Scalar(0),  Scalar(0.5) * width * width,
         op.edges.data(), op.masses.data(),      op.diagonals.data()};
-    std::vector<BlockShapes> blocks(static_cast<size_t>(level.numUnknowns / kRowsPerBlock) + 1);
-    ForEachBlock(level.numUnknowns, [&](Index begin, Index end, size_t block) {
-        blocks[block] = BuildBlock(level, job, begin, end);
+    auto const blocks = MapBlocks(level.numUnknowns, kRowsPerBlock, [&](Index begin, Index end) {
+        return BuildBlock(level, job, begin, end);
     });
     BlockShapes all;
     for (BlockShapes const& block : blocks) {
@@ -66,6 +67,11 @@ MetricQuality Build(CascadeLevel const& level, CascadeRows<Scalar> const& metric
 }
 
 }  // namespace
+
+CascadeRings GetRings(CascadeLevel const& level) {
+    return {level.offsets.data(), level.neighbours.data(), level.faceSize, level.numClosed,
+            level.numSurface};
+}
 
 MetricQuality BuildOperator(CascadeLevel const& level, CascadeRows<float> const& metric,
                             float width, CascadeOperator<float>& op) {

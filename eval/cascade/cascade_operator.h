@@ -3,11 +3,12 @@
 
 #include <Eigen/Core>
 
-#include "eval/parallel/row_blocks.h"
 #include "far_ext/cascade/cascade_level.h"
 #include "far_ext/rows/large_array.h"
 
 namespace limn::eval {
+
+struct CascadeRings;
 
 /// Position and filter width of a row: x, y, z, sigma.
 template <class Scalar>
@@ -41,6 +42,9 @@ struct CascadeOperator {
     far_ext::LargeArray<Scalar>
         diagonals;  ///< M_ii + L_ii, per unknown; 0 where nothing moves a row: X = X0 there
 };
+
+/// The level's rings as kernels take them.
+CascadeRings GetRings(far_ext::CascadeLevel const& level);
 
 /// Builds the operator from a metric, on the calling arena's threads.
 ///

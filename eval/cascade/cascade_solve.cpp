@@ -7,6 +7,7 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
+#include "eval/parallel/rows.h"
 #include "far_ext/error.h"
 
 namespace limn::eval {
@@ -15,17 +16,18 @@ namespace {
 
 using far_ext::CascadeLevel;
 using Operator = CascadeOperator<double>;
+using Row = CascadeRow<double>;
 
 constexpr double kNothing = 1e-290;       // squares below it have lost their digits
 constexpr double kLeastResidual = 1e-16;  // what steps change below it is rounding
 
 /// a / b per coordinate; 0 where there is nothing left to divide by.
-DoubleLanes Divide(DoubleLanes const& a, DoubleLanes const& b) {
+Row Divide(Row const& a, Row const& b) {
     return (b > kNothing).select(a / (b > kNothing).select(b, 1.0), 0.0);
 }
 
 /// Size of a residual to that of the data, from sums of squares per coordinate.
-double FindRelativeSize(DoubleLanes const& residual, DoubleLanes const& data) {
+double FindRelativeSize(Row const& residual, Row const& data) {
     auto const ratio = [](double r, double d) {
         return r > 0.0 ? std::sqrt(r / std::max(d, 1e-300)) : 0.0;
     };
@@ -35,17 +37,16 @@ double FindRelativeSize(DoubleLanes const& residual, DoubleLanes const& data) {
 
 /// Sum over unknowns of (M (X0 - centroid))^2; of the widths without centroid.
 template <class Scalar>
-DoubleLanes MeasureData(CascadeLevel const& level, CascadeOperator<Scalar> const& op,
-                        CascadeRows<Scalar> const& x0) {
-    DoubleLanes centroid = DoubleLanes::Zero();
+Row MeasureData(CascadeLevel const& level, CascadeOperator<Scalar> const& op,
+                CascadeRows<Scalar> const& x0) {
+    Row centroid = Row::Zero();
     if (level.numUnknowns > 0) {
-        centroid =
-            SumRows(level.numUnknowns,
-                    [&](Index row) -> DoubleLanes { return x0[row].template cast<double>(); }) /
-            level.numUnknowns;
+        centroid = SumRows(level.numUnknowns,
+                           [&](Index row) -> Row { return x0[row].template cast<double>(); }) /
+                   level.numUnknowns;
     }
     centroid[3] = 0.0;
-    return SumRows(level.numUnknowns, [&](Index row) -> DoubleLanes {
+    return SumRows(level.numUnknowns, [&](Index row) -> Row {
         return (static_cast<double>(op.masses[row]) * (x0[row].template cast<double>() - centroid))
             .square();
     });
@@ -59,17 +60,16 @@ public:
                           Index end)
         : _level(level), _op(op), _x0(x0), _x(x), _begin(begin), _end(end) {
         size_t const count = static_cast<size_t>(end - begin);
-        for (auto* rows : {&_residual, &_direction, &_image})
-            rows->assign(count, DoubleLanes::Zero());
+        for (auto* rows : {&_residual, &_direction, &_image}) rows->assign(count, Row::Zero());
     }
 
-    CascadeSolve Run(DoubleLanes const& data, int maxIterations, double tolerance,
+    CascadeSolve Run(Row const& data, int maxIterations, double tolerance,
                      std::function<void(double)> const& progress) {
         CascadeSolve result;
         double first = 0.0;
         _isPreconditioned = tolerance > 0.0;
-        DoubleLanes energy = DoubleLanes::Zero();
-        DoubleLanes squares = Sum([&](Index row) {
+        Row energy = Row::Zero();
+        Row squares = Sum([&](Index row) {
             _residual[At(row)] =
                 FindResidual(_level, _op, _x.data(), _x0.data(), row) * IsMoved(row);
             return _residual[At(row)].square();
@@ -88,17 +88,17 @@ public:
                                                           : 0.0;
                 progress(std::clamp(std::max(byCount, byResidual), 0.0, 1.0));
             }
-            DoubleLanes const before = energy;
+            Row const before = energy;
             energy = Sum([&](Index row) { return _residual[At(row)].square() * GetInverse(row); });
-            DoubleLanes const momentum = Divide(energy, before);
+            Row const momentum = Divide(energy, before);
             ForEachRow(_end - _begin, [&](Index i) {
                 _direction[i] = _residual[i] * GetInverse(_begin + i) + momentum * _direction[i];
             });
-            DoubleLanes const curvature = Sum([&](Index row) {
+            Row const curvature = Sum([&](Index row) {
                 _image[At(row)] = Apply(row);
                 return _image[At(row)] * _direction[At(row)];
             });
-            DoubleLanes const step = Divide(energy, curvature);
+            Row const step = Divide(energy, curvature);
             squares = Sum([&](Index row) {
                 _x[row] += step * _direction[At(row)];
                 _residual[At(row)] -= step * _image[At(row)];
@@ -118,12 +118,12 @@ private:
     }
 
     template <class Term>
-    DoubleLanes Sum(Term const& term) const {
-        return SumRows(_end - _begin, [&](Index i) -> DoubleLanes { return term(_begin + i); });
+    Row Sum(Term const& term) const {
+        return SumRows(_end - _begin, [&](Index i) -> Row { return term(_begin + i); });
     }
 
-    DoubleLanes Apply(Index row) const {
-        DoubleLanes sum = _op.diagonals[row] * _direction[At(row)];
+    Row Apply(Index row) const {
+        Row sum = _op.diagonals[row] * _direction[At(row)];
         if (_op.diagonals[row] == 0.0) return sum;
         for (int k = _level.offsets[row]; k < _level.offsets[row + 1]; ++k) {
             Index const other = _level.neighbours[k];
@@ -152,8 +152,7 @@ void SolveRowsByCholesky(CascadeLevel const& level, Operator const& op,
         bool const isMoved = op.diagonals[row] > 0.0;
         Index const i = row - begin;
         entries.emplace_back(i, i, isMoved ? op.diagonals[row] : 1.0);
-        rightSide.row(i) =
-            (isMoved ? DoubleLanes(op.masses[row] * x0[row]) : x[row]).matrix().transpose();
+        rightSide.row(i) = (isMoved ? Row(op.masses[row] * x0[row]) : x[row]).matrix().transpose();
         if (!isMoved) continue;
         for (int k = level.offsets[row]; k < level.offsets[row + 1]; ++k) {
             Index const other = level.neighbours[k];
@@ -183,8 +182,8 @@ void SolveRowsByCholesky(CascadeLevel const& level, Operator const& op,
 template <class Scalar>
 double MeasureResidual(CascadeLevel const& level, CascadeOperator<Scalar> const& op,
                        CascadeRows<Scalar> const& x, CascadeRows<Scalar> const& x0) {
-    DoubleLanes const squares = SumRows(level.numUnknowns, [&](Index row) -> DoubleLanes {
-        if (op.diagonals[row] == Scalar(0)) return DoubleLanes::Zero();
+    Row const squares = SumRows(level.numUnknowns, [&](Index row) -> Row {
+        if (op.diagonals[row] == Scalar(0)) return Row::Zero();
         return FindResidual(level, op, x.data(), x0.data(), row).template cast<double>().square();
     });
     return FindRelativeSize(squares, MeasureData(level, op, x0));
@@ -199,7 +198,7 @@ CascadeSolve SolveByConjugateGradients(CascadeLevel const& level, Operator const
                                        CascadeRows<double> const& x0, CascadeRows<double>& x,
                                        int maxIterations, double tolerance,
                                        std::function<void(double)> const& progress) {
-    DoubleLanes const data = MeasureData(level, op, x0);
+    Row const data = MeasureData(level, op, x0);
     double const share = level.numSurface < level.numUnknowns
                              ? std::sqrt(0.5)
                              : 1.0;  // so that both together keep it

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "eval/cascade/cascade_kernel.h"
+#include "eval/kernels/dispatch.h"
 #include "eval/parallel/step_pass.h"
 
 namespace limn::eval {
@@ -21,9 +22,15 @@ CascadeSweepJob<Scalar> MakeJob(CascadeLevel const& level, CascadeOperator<Scala
 }
 
 template <class Scalar>
+CascadeFunctions<Scalar> const& GetFunctions() {
+    return GetKernel<CascadeKernel>();
+}
+
+template <class Scalar>
 void Sweep(CascadeLevel const& level, CascadeSweepJob<Scalar> const& job) {
-    ForEachBlock(level.numUnknowns,
-                 [&](Index begin, Index end, size_t) { SweepCascadeRows(job, begin, end); });
+    ForEachBlock(level.numUnknowns, kRowsPerBlock, [&](Index begin, Index end) {
+        GetFunctions<Scalar>().sweepRows(job, begin, end);
+    });
 }
 
 template <class Scalar>
@@ -40,8 +47,8 @@ void SweepAll(CascadeLevel const& level, CascadeOperator<Scalar> const& op,
             Sweep(level, jobs[0]);
         } else {
             RunStepsInOnePass(static_cast<Index>(jobs.size()), level.numUnknowns, level.bandwidth,
-                              [&](Index step, Index begin, Index end, size_t) {
-                                  SweepCascadeRows(jobs[step], begin, end);
+                              [&](Index step, Index begin, Index end) {
+                                  GetFunctions<Scalar>().sweepRows(jobs[step], begin, end);
                               });
         }
         jobs.clear();

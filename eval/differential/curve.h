@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "eval/parallel/row_blocks.h"
+#include "eval/differential/lanes.h"
 
 namespace limn::eval {
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "eval/differential/v_cycle.h"
+#include "eval/parallel/rows.h"
 #include "far_ext/error.h"
 
 namespace limn::eval {

@@ -2,8 +2,11 @@
 #include "eval/differential/multigrid_levels.h"
 
 #include <algorithm>
+#include <span>
+#include <utility>
 
 #include "far_ext/differential/laplacian.h"
+#include "far_ext/rows/breadth_first.h"
 
 namespace limn::eval {
 
@@ -16,43 +19,16 @@ bool IsFixed(Level const& level, Index vertex, FixedVertices fixed) {
            (fixed == FixedVertices::Boundary && level.IsVertexBoundary(vertex));
 }
 
-/// Fills vertices, numUnknowns and blocks. \return the row of every vertex
-std::vector<Index> NumberBreadthFirst(Level const& level, FixedVertices fixed,
-                                      MultigridLevel& graph) {
-    constexpr Index kFixed = -2, kNew = -1;
-    std::vector<Index> rows(static_cast<size_t>(level.GetNumVertices()), kNew);
-    for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
-        if (IsFixed(level, vertex, fixed)) rows[vertex] = kFixed;
-    }
-    graph.vertices.reserve(rows.size());
-    for (Index start = 0; start < level.GetNumVertices(); ++start) {
-        if (rows[start] != kNew) continue;
-        auto const begin = static_cast<Index>(graph.vertices.size());
-        bool isSingular = true;
-        rows[start] = begin;
-        graph.vertices.push_back(start);
-        for (size_t at = static_cast<size_t>(begin); at < graph.vertices.size(); ++at) {
-            Index const vertex = graph.vertices[at];
-            for (Index edge : level.GetVertexEdges(vertex)) {
-                Index const other = far_ext::GetOtherEnd(level, edge, vertex);
-                if (rows[other] == kFixed) isSingular = false;
-                if (rows[other] != kNew) continue;
-                rows[other] = static_cast<Index>(graph.vertices.size());
-                graph.vertices.push_back(other);
-            }
-        }
-        graph.blocks.push_back({begin, static_cast<Index>(graph.vertices.size()), isSingular});
-    }
-    graph.numUnknowns = static_cast<Index>(graph.vertices.size());
-    for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
-        if (rows[vertex] != kFixed) continue;
-        rows[vertex] = static_cast<Index>(graph.vertices.size());
-        graph.vertices.push_back(vertex);
-    }
-    return rows;
+far_ext::BreadthFirstOrder OrderAlongEdges(Level const& level, FixedVertices fixed) {
+    auto const visitNeighbours = [&](Index vertex, auto const& visit) {
+        for (Index edge : level.GetVertexEdges(vertex))
+            visit(far_ext::GetOtherEnd(level, edge, vertex));
+    };
+    return far_ext::OrderBreadthFirst(level.GetNumVertices(), visitNeighbours,
+                                      [&](Index vertex) { return IsFixed(level, vertex, fixed); });
 }
 
-void ListNeighbours(Level const& level, std::vector<Index> const& rows, MultigridLevel& graph) {
+void ListNeighbours(Level const& level, std::span<Index const> rows, MultigridLevel& graph) {
     size_t const numUnknowns = static_cast<size_t>(graph.numUnknowns);
     graph.offsets.assign(numUnknowns + 1, 0);
     for (size_t row = 0; row < numUnknowns; ++row) {
@@ -67,8 +43,20 @@ void ListNeighbours(Level const& level, std::vector<Index> const& rows, Multigri
     }
 }
 
-void LinkToFiner(Level const& level, std::vector<Index> const& rows, MultigridLevel& graph,
-                 std::vector<Index> const& fineRows, MultigridLevel& fine) {
+/// \param componentOffsets  where each component's unknowns begin, and the end of the last
+void ListBlocks(std::span<Index const> componentOffsets, MultigridLevel& graph) {
+    auto const isUnknown = [&](Index row) { return row < graph.numUnknowns; };
+    for (size_t i = 0; i + 1 < componentOffsets.size(); ++i) {
+        Index const begin = componentOffsets[i], end = componentOffsets[i + 1];
+        bool const isSingular =
+            std::all_of(graph.neighbours.begin() + graph.offsets[begin],
+                        graph.neighbours.begin() + graph.offsets[end], isUnknown);
+        graph.blocks.push_back({begin, end, isSingular});
+    }
+}
+
+void LinkToFiner(Level const& level, std::span<Index const> rows, MultigridLevel& graph,
+                 std::span<Index const> fineRows, MultigridLevel& fine) {
     fine.parents.assign(static_cast<size_t>(fine.numUnknowns), {-1, -1});
     graph.children.resize(static_cast<size_t>(graph.numUnknowns));
     for (Index row = 0; row < graph.numUnknowns; ++row) {
@@ -91,16 +79,19 @@ void LinkToFiner(Level const& level, std::vector<Index> const& rows, MultigridLe
 std::vector<MultigridLevel> BuildMultigridLevels(Far::TopologyRefiner const& refiner,
                                                  FixedVertices fixed, int coarsest) {
     std::vector<MultigridLevel> graphs;
-    std::vector<Index> rows, coarseRows;
+    far_ext::LargeArray<Index> coarseRows;
     for (int k = coarsest; k <= refiner.GetMaxLevel(); ++k) {
         Level const level = refiner.GetLevel(k);
-        graphs.emplace_back();
-        rows = NumberBreadthFirst(level, fixed, graphs.back());
-        ListNeighbours(level, rows, graphs.back());
+        auto order = OrderAlongEdges(level, fixed);
+        auto rows = far_ext::InvertOrder(order.rows);
+        MultigridLevel& graph = graphs.emplace_back();
+        graph.numUnknowns = order.GetNumFree();
+        graph.vertices = std::move(order.rows);
+        ListNeighbours(level, rows, graph);
+        ListBlocks(order.componentOffsets, graph);
         if (k > coarsest)
-            LinkToFiner(refiner.GetLevel(k - 1), coarseRows, *(graphs.end() - 2), rows,
-                        graphs.back());
-        coarseRows.swap(rows);
+            LinkToFiner(refiner.GetLevel(k - 1), coarseRows, *(graphs.end() - 2), rows, graph);
+        coarseRows = std::move(rows);
     }
     return graphs;
 }

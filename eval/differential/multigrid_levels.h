@@ -14,8 +14,7 @@ namespace limn::eval {
 enum class FixedVertices { None, Boundary };
 
 /// One level of a refinement as a graph of unknowns. Rows are numbered breadth-first along edges,
-/// so that neighbours lie near each other in memory (2 to 3 times in sweeps); fixed vertices come
-/// after all unknowns.
+/// fixed vertices after all unknowns, see far_ext/rows/breadth_first.h.
 ///
 /// Transfer  To a finer level a value goes by the mean of its two parents where an edge was split,
 ///           as it is at vertices, and by the mean of its neighbours at the middle of a face. To a

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "eval/differential/curve.h"
-#include "eval/parallel/row_blocks.h"
+#include "eval/parallel/rows.h"
 #include "far_ext/differential/laplacian.h"
 #include "far_ext/error.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/differential/v_cycle.h"
 
+#include "eval/parallel/rows.h"
 #include "far_ext/error.h"
 
 namespace limn::eval {

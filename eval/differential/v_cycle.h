@@ -6,8 +6,8 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
+#include "eval/differential/lanes.h"
 #include "eval/differential/multigrid_levels.h"
-#include "eval/parallel/row_blocks.h"
 
 namespace limn::eval {
 

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "eval/fit/limit_problem.h"
+#include "eval/parallel/rows.h"
 
 namespace limn::eval {
 
@@ -82,7 +83,7 @@ private:
 
     /// q = A p and <p, q>.
     Sums<Length> Apply() {
-        auto const partials = MapChunks(_count, [&](Index begin, Index end) {
+        auto const partials = MapBlocks(_count, kRowsPerSum, [&](Index begin, Index end) {
             Sums<Length> sum{};
             _problem.A.ForEachRow<Row>(
                 begin, end, Stage::Rest, _p.data(),
@@ -117,8 +118,9 @@ private:
 
     /// p = r + beta p.
     void Turn(Sums<Length> const& beta) {
-        ForEachChunk(_count, [&](Index begin, Index end) {
-            for (size_t k = At(begin); k < At(end); ++k) _p[k] = _r[k] + beta[k % Length] * _p[k];
+        ForEachRow(_count, [&](Index row) {
+            for (size_t i = 0; i < Length; ++i)
+                _p[At(row) + i] = _r[At(row) + i] + beta[i] * _p[At(row) + i];
         });
     }
 
@@ -135,7 +137,7 @@ private:
 
     template <class Work>
     double Sum(Work const& work) {
-        auto const partials = MapChunks(_count, [&](Index begin, Index end) {
+        auto const partials = MapBlocks(_count, kRowsPerSum, [&](Index begin, Index end) {
             Partial partial;
             work(begin, end, partial);
             return partial;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "eval/fit/decompose.h"
+#include "eval/parallel/rows.h"
 #include "far_ext/error.h"
 #include "far_ext/rows/large_array.h"
 
@@ -83,13 +84,11 @@ void Join(SolveReport& report, SolveReport const& block) {
 void Gather(std::span<double const> values, int length, int first, int count,
             std::vector<Index> const& vertices, std::span<double> rows) {
     WithLength(count, [&]<int Count>() {
-        ForEachChunk(static_cast<Index>(vertices.size()), [&](Index begin, Index end) {
-            for (Index row = begin; row < end; ++row) {
-                double const* const from =
-                    &values[static_cast<size_t>(vertices[row]) * static_cast<size_t>(length) +
-                            static_cast<size_t>(first)];
-                DoubleRow<Count>::Load(from, 0).Store(rows.data(), row);
-            }
+        ForEachRow(static_cast<Index>(vertices.size()), [&](Index row) {
+            double const* const from =
+                &values[static_cast<size_t>(vertices[row]) * static_cast<size_t>(length) +
+                        static_cast<size_t>(first)];
+            DoubleRow<Count>::Load(from, 0).Store(rows.data(), row);
         });
     });
 }
@@ -98,13 +97,11 @@ void Gather(std::span<double const> values, int length, int first, int count,
 void Scatter(std::span<double const> rows, int length, int first, int count,
              std::vector<Index> const& vertices, std::span<double> values) {
     WithLength(count, [&]<int Count>() {
-        ForEachChunk(static_cast<Index>(vertices.size()), [&](Index begin, Index end) {
-            for (Index row = begin; row < end; ++row) {
-                double* const to =
-                    &values[static_cast<size_t>(vertices[row]) * static_cast<size_t>(length) +
-                            static_cast<size_t>(first)];
-                DoubleRow<Count>::Load(rows.data(), row).Store(to, 0);
-            }
+        ForEachRow(static_cast<Index>(vertices.size()), [&](Index row) {
+            double* const to =
+                &values[static_cast<size_t>(vertices[row]) * static_cast<size_t>(length) +
+                        static_cast<size_t>(first)];
+            DoubleRow<Count>::Load(rows.data(), row).Store(to, 0);
         });
     });
 }

@@ -6,8 +6,9 @@
 #include <iterator>
 #include <limits>
 
-#include "eval/parallel/row_blocks.h"
+#include "eval/parallel/rows.h"
 #include "far_ext/error.h"
+#include "far_ext/rows/breadth_first.h"
 
 namespace limn::eval {
 
@@ -142,21 +143,10 @@ LimitOperator LimitOperator::Build(Far::TopologyRefiner const& refiner, int leve
 }
 
 std::vector<Index> LimitOperator::OrderForSweeps() const {
-    std::vector<Index> order;
-    order.reserve(_classes.size());
-    std::vector<char> isSeen(_classes.size(), 0);
-    for (Index start = 0; start < GetNumVertices(); ++start) {
-        if (isSeen[start]) continue;
-        isSeen[start] = 1;
-        order.push_back(start);
-        for (size_t at = order.size() - 1; at < order.size(); ++at) {
-            for (Index neighbour : GetNeighbours(order[at])) {
-                if (isSeen[neighbour]) continue;
-                isSeen[neighbour] = 1;
-                order.push_back(neighbour);
-            }
-        }
-    }
+    auto const visitNeighbours = [&](Index row, auto const& visit) {
+        for (Index neighbour : GetNeighbours(row)) visit(neighbour);
+    };
+    auto order = far_ext::OrderBreadthFirst(GetNumVertices(), visitNeighbours).rows;
     for (auto begin = order.begin(); begin != order.end();) {
         auto const end = begin + std::min(std::ptrdiff_t{kRowsPerBlock}, order.end() - begin);
         std::stable_sort(begin, end, [&](Index a, Index b) { return _classes[a] < _classes[b]; });
@@ -167,9 +157,7 @@ std::vector<Index> LimitOperator::OrderForSweeps() const {
 
 LimitOperator LimitOperator::Reorder(std::vector<Index>& vertices) const {
     vertices = OrderForSweeps();
-    std::vector<Index> rows(vertices.size());
-    for (size_t row = 0; row < vertices.size(); ++row)
-        rows[vertices[row]] = static_cast<Index>(row);
+    auto const rows = far_ext::InvertOrder(vertices);
     LimitOperator result;
     result._starts.reserve(_starts.size());
     result._classes.reserve(_classes.size());
@@ -194,7 +182,7 @@ LimitOperator LimitOperator::Reorder(std::vector<Index>& vertices) const {
 
 void LimitOperator::Apply(std::span<double const> x, int length, std::span<double> y) const {
     WithLength(length, [&]<int Length>() {
-        ForEachChunk(GetNumVertices(), [&](Index begin, Index end) {
+        ForEachBlock(GetNumVertices(), kRowsPerBlock, [&](Index begin, Index end) {
             using Row = DoubleRow<Length>;
             ForEachRow<Row>(begin, end, Stage::Fixed, x.data(),
                             [&](Index row, RowClass const&, Row const&, Row const& limit) {

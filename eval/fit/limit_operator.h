@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "eval/fit/value_row.h"
-#include "eval/parallel/chunks.h"
 #include "far_ext/limit/limit_row.h"
 
 namespace limn::eval {
@@ -52,9 +51,9 @@ public:
     static LimitOperator Build(Far::TopologyRefiner const& refiner, int level = 0,
                                far_ext::LimitOptions const& options = {});
 
-    /// The same operator with its rows in an order that is swept fast: breadth-first, so that
-    /// neighbours lie near each other in memory, and within blocks of 2048 rows by class, so that
-    /// the processor can guess what comes next.
+    /// The same operator with its rows in an order that is swept fast: breadth-first (see
+    /// far_ext/rows/breadth_first.h), and within blocks of 2048 rows by class, so that the
+    /// processor can guess what comes next.
     ///
     /// \param vertices  receives per row the vertex it belongs to
     LimitOperator Reorder(std::vector<Index>& vertices) const;

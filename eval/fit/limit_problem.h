@@ -24,6 +24,9 @@ struct LimitProblem {
     OnIteration onIteration{};
 };
 
+/// Rows whose sums and maxima are found in one block (see eval/parallel/rows.h).
+inline constexpr Index kRowsPerSum = 4096;
+
 /// How an iteration went.
 struct IterationResult {
     int applications = 0;

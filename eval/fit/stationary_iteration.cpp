@@ -52,13 +52,12 @@ public:
     std::vector<float> Take(std::span<Step const> steps) {
         if (steps.size() == 1) return {TakeOne(steps[0])};
         Index const numRows = _A.GetNumVertices();
-        std::vector<std::vector<float>> maxima(
-            steps.size(),
-            std::vector<float>(static_cast<size_t>(numRows / kRowsPerBlock) + 1, 0.0f));
+        auto const numBlocks = static_cast<size_t>(CountBlocks(numRows, kRowsPerBlock));
+        std::vector<std::vector<float>> maxima(steps.size(), std::vector<float>(numBlocks, 0.0f));
         float* const buffers[] = {_current.data(), _previous.data()};
         RunStepsInOnePass(static_cast<Index>(steps.size()), numRows, _A.GetBandwidth(),
-                          [&](Index step, Index begin, Index end, size_t block) {
-                              maxima[step][block] =
+                          [&](Index step, Index begin, Index end) {
+                              maxima[step][begin / kRowsPerBlock] =
                                   TakeRows(steps[step], begin, end, buffers[step % 2],
                                            buffers[(step + 1) % 2]);
                           });
@@ -72,13 +71,10 @@ public:
     /// and E_{k-1} is less by it. The step that follows needs no A.
     void Restart(double a, double b) {
         float const fa = static_cast<float>(a), fb = static_cast<float>(b);
-        ForEachChunk(_A.GetNumVertices(), [&](Index begin, Index end) {
-            for (Index row = begin; row < end; ++row) {
-                Row const before =
-                    Row::Load(_previous.data(), row) - Row::Load(_current.data(), row);
-                (fb * Row::Load(_right.data(), row) - fa * before).Store(_previous.data(), row);
-                Row().Store(_current.data(), row);
-            }
+        ForEachRow(_A.GetNumVertices(), [&](Index row) {
+            Row const before = Row::Load(_previous.data(), row) - Row::Load(_current.data(), row);
+            (fb * Row::Load(_right.data(), row) - fa * before).Store(_previous.data(), row);
+            Row().Store(_current.data(), row);
         });
         std::swap(_current, _previous);
     }
@@ -91,9 +87,10 @@ private:
     using Row = FloatRow<Lanes>;
 
     float TakeOne(Step step) {
-        auto const maxima = MapChunks(_A.GetNumVertices(), [&](Index begin, Index end) {
-            return TakeRows(step, begin, end, _current.data(), _previous.data());
-        });
+        auto const maxima =
+            MapBlocks(_A.GetNumVertices(), kRowsPerSum, [&](Index begin, Index end) {
+                return TakeRows(step, begin, end, _current.data(), _previous.data());
+            });
         std::swap(_current, _previous);
         return std::sqrt(FindLargest(maxima));
     }
@@ -165,20 +162,21 @@ private:
     /// The right side of the correction. Returns max |M - A P|.
     double FindRight() {
         using Row = DoubleRow<Length>;
-        auto const maxima = MapChunks(_problem.A.GetNumVertices(), [&](Index begin, Index end) {
-            double largest = 0.0;
-            _problem.A.ForEachRow<Row>(
-                begin, end, Stage::Rest, _problem.solution,
-                [&](Index row, auto const&, Row const&, Row const& limit) {
-                    Row const residual = Row::Load(_problem.data, row) - limit;
-                    largest = Larger(residual.SquaredLength(), largest);
-                    float* const right =
-                        _correction.GetRight() + static_cast<size_t>(row) * _correction.kStride;
-                    for (size_t i = 0; i < Length; ++i)
-                        right[i] = static_cast<float>(residual.values[i] / _problem.size);
-                });
-            return largest;
-        });
+        auto const maxima =
+            MapBlocks(_problem.A.GetNumVertices(), kRowsPerSum, [&](Index begin, Index end) {
+                double largest = 0.0;
+                _problem.A.ForEachRow<Row>(
+                    begin, end, Stage::Rest, _problem.solution,
+                    [&](Index row, auto const&, Row const&, Row const& limit) {
+                        Row const residual = Row::Load(_problem.data, row) - limit;
+                        largest = Larger(residual.SquaredLength(), largest);
+                        float* const right =
+                            _correction.GetRight() + static_cast<size_t>(row) * _correction.kStride;
+                        for (size_t i = 0; i < Length; ++i)
+                            right[i] = static_cast<float>(residual.values[i] / _problem.size);
+                    });
+                return largest;
+            });
         return std::sqrt(FindLargest(maxima)) / _problem.size;
     }
 
@@ -237,14 +235,11 @@ private:
     }
 
     void AddCorrection() {
-        ForEachChunk(_problem.A.GetNumVertices(), [&](Index begin, Index end) {
-            for (Index row = begin; row < end; ++row) {
-                float const* const e =
-                    _correction.Get() + static_cast<size_t>(row) * _correction.kStride;
-                double* const p = _problem.solution + static_cast<size_t>(row) * Length;
-                for (size_t i = 0; i < Length; ++i)
-                    p[i] += _problem.size * static_cast<double>(e[i]);
-            }
+        ForEachRow(_problem.A.GetNumVertices(), [&](Index row) {
+            float const* const e =
+                _correction.Get() + static_cast<size_t>(row) * _correction.kStride;
+            double* const p = _problem.solution + static_cast<size_t>(row) * Length;
+            for (size_t i = 0; i < Length; ++i) p[i] += _problem.size * static_cast<double>(e[i]);
         });
     }
 
@@ -275,17 +270,19 @@ double FindResidual(LimitProblem const& problem, Index* worst) {
     };
     Largest largest;
     WithLength(problem.length, [&]<int Length>() {
-        auto const maxima = MapChunks(problem.A.GetNumVertices(), [&](Index begin, Index end) {
-            Largest found;
-            using Row = DoubleRow<Length>;
-            problem.A.ForEachRow<Row>(
-                begin, end, Stage::Fixed, problem.solution,
-                [&](Index row, auto const&, Row const&, Row const& limit) {
-                    double const square = (Row::Load(problem.data, row) - limit).SquaredLength();
-                    if (!(square <= found.square)) found = {square, row};
-                });
-            return found;
-        });
+        auto const maxima =
+            MapBlocks(problem.A.GetNumVertices(), kRowsPerSum, [&](Index begin, Index end) {
+                Largest found;
+                using Row = DoubleRow<Length>;
+                problem.A.ForEachRow<Row>(
+                    begin, end, Stage::Fixed, problem.solution,
+                    [&](Index row, auto const&, Row const&, Row const& limit) {
+                        double const square =
+                            (Row::Load(problem.data, row) - limit).SquaredLength();
+                        if (!(square <= found.square)) found = {square, row};
+                    });
+                return found;
+            });
         for (Largest const& found : maxima) {
             if (!(found.square <= largest.square)) largest = found;
         }

@@ -93,4 +93,19 @@ struct FloatRow<4> {
     }
 };
 
+/// Calls f.operator()<Length>() with a row's length, 1 to 4, known when compiling.
+template <class F>
+void WithLength(int length, F const& f) {
+    switch (length) {
+        case 1:
+            return f.template operator()<1>();
+        case 2:
+            return f.template operator()<2>();
+        case 3:
+            return f.template operator()<3>();
+        default:
+            return f.template operator()<4>();
+    }
+}
+
 }  // namespace limn::eval

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "eval/parallel/row_blocks.h"
+#include "eval/parallel/rows.h"
 
 namespace limn::eval {
 
@@ -10,7 +10,7 @@ namespace limn::eval {
 // a distance: what a step reads is done, and what it writes is read no more. The same bits as one
 // step after the other, and what belongs to the rows comes from memory once for all of them.
 
-/// Blocks of rows (see row_blocks.h) that each step works on at once.
+/// Blocks of kRowsPerBlock rows that each step works on at once.
 inline constexpr Index kBlocksAbreast = 4;
 
 /// Blocks from one step to the next: those that are worked on at once, and those that neighbours
@@ -28,19 +28,18 @@ inline int CountStepsPerPass(Index numRows, Index bandwidth) {
     return numRows / kRowsPerBlock >= 2 * kSteps * FindStepDistance(bandwidth) ? kSteps : 1;
 }
 
-/// Calls work(step, begin, end, block) for all blocks of rows and all steps, by the arena's
-/// threads.
+/// Calls work(step, begin, end) for all blocks of rows and all steps, by the arena's threads.
 template <class Work>
 void RunStepsInOnePass(Index numSteps, Index numRows, Index bandwidth, Work const& work) {
-    Index const numBlocks = (numRows + kRowsPerBlock - 1) / kRowsPerBlock,
+    Index const numBlocks = CountBlocks(numRows, kRowsPerBlock),
                 distance = FindStepDistance(bandwidth);
     for (Index front = 0; front < numBlocks + distance * (numSteps - 1); front += kBlocksAbreast) {
         tbb::parallel_for(Index{0}, numSteps * kBlocksAbreast, [&](Index task) {
             Index const step = task / kBlocksAbreast,
                         block = front - distance * step + task % kBlocksAbreast;
             if (block < 0 || block >= numBlocks) return;
-            work(step, block * kRowsPerBlock, std::min((block + 1) * kRowsPerBlock, numRows),
-                 static_cast<size_t>(block));
+            Index const begin = block * kRowsPerBlock;
+            work(step, begin, begin + std::min(kRowsPerBlock, numRows - begin));
         });
     }
 }

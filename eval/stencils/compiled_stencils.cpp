@@ -5,7 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "eval/parallel/for_parts.h"
+#include "eval/kernels/dispatch.h"
+#include "eval/parallel/rows.h"
 #include "eval/stencils/stencil_kernel.h"
 #include "far_ext/error.h"
 
@@ -115,8 +116,9 @@ void CompiledStencils::EvaluateGroups(StencilJob const& job) const {
                                     _groups.controls.data(), _groups.runStarts.data(),
                                     _groups.weights.data()};
     Index const rowsPerGroup = std::max(1, _groups.numRows / numGroups);
-    ForParts(0, numGroups, std::max(1, kRowsPerTask / rowsPerGroup),
-             [&](Index first, Index last) { EvaluateStencilGroups(job, arrays, first, last); });
+    ForEachBlock(numGroups, std::max(1, kRowsPerTask / rowsPerGroup), [&](Index first, Index last) {
+        GetKernel<StencilKernel>().evaluateGroups(job, arrays, first, last);
+    });
 }
 
 void CompiledStencils::EvaluateSingles(StencilJob const& job) const {
@@ -126,8 +128,9 @@ void CompiledStencils::EvaluateSingles(StencilJob const& job) const {
     StencilRunArrays const arrays{singles.runs.data(), singles.indices.data(),
                                   singles.weights.data()};
     Index const rowsPerRun = std::max(1, _groups.numRows / numRuns);
-    ForParts(0, numRuns, std::max(1, kRowsPerTask / rowsPerRun),
-             [&](Index first, Index last) { EvaluateStencilRuns(job, arrays, first, last); });
+    ForEachBlock(numRuns, std::max(1, kRowsPerTask / rowsPerRun), [&](Index first, Index last) {
+        GetKernel<StencilKernel>().evaluateRuns(job, arrays, first, last);
+    });
 }
 
 void CompiledStencils::EvaluateSlices(StencilJob const& job) const {
@@ -135,8 +138,10 @@ void CompiledStencils::EvaluateSlices(StencilJob const& job) const {
         _slices.offsets.data(), _slices.rows.data(), _slices.indices.data(), {}};
     for (int set = 0; set < _groups.numSets; ++set)
         arrays.weights[set] = _slices.weights[set].data();
-    ForParts(0, _slices.GetNum(), kRowsPerTask / StencilSliceArrays::kLanes,
-             [&](Index first, Index last) { EvaluateStencilSlices(job, arrays, first, last); });
+    ForEachBlock(_slices.GetNum(), kRowsPerTask / StencilSliceArrays::kLanes,
+                 [&](Index first, Index last) {
+                     GetKernel<StencilKernel>().evaluateSlices(job, arrays, first, last);
+                 });
 }
 
 }  // namespace limn::eval

@@ -5,10 +5,9 @@
 #include <cmath>
 
 #include <Eigen/Geometry>
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
+#include "eval/parallel/rows.h"
 #include "far_ext/error.h"
 
 namespace limn::eval {
@@ -86,9 +85,10 @@ std::vector<SurfaceSample> PlaceStencils::EvaluateWith(std::span<double const> p
     };
     tbb::enumerable_thread_specific<FaceTree> trees(
         [&] { return FaceTree(_surface, positions, 3); });
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, _places.size(), 256), [&](auto const& range) {
+    constexpr Index kPlacesPerBlock = 256;
+    ForEachBlock(static_cast<Index>(_places.size()), kPlacesPerBlock, [&](Index begin, Index end) {
         FaceTree* tree = nullptr;  // made where a place needs it
-        for (size_t i = range.begin(); i != range.end(); ++i) {
+        for (Index i = begin; i < end; ++i) {
             SurfacePlace const& place = _places[i];
             if (!_surface.HasLimit(place.face)) continue;
             if (_rowOfPlace[i] >= 0) {

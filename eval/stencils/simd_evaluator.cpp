@@ -3,7 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "eval/parallel/for_parts.h"
+#include "eval/kernels/dispatch.h"
+#include "eval/parallel/rows.h"
 #include "eval/stencils/stencil_kernel.h"
 #include "far_ext/error.h"
 
@@ -97,8 +98,9 @@ bool SimdEvaluator::Apply(float const* source, BufferDescriptor const& sourceDes
     }
     StencilJob const job = MakeJob(source, sourceDesc, targets, start, end);
     constexpr Index kRowsPerTask = 4096;
-    ForParts(start, end, kRowsPerTask,
-             [&](Index first, Index last) { EvaluateStencilRows(job, arrays, first, last); });
+    ForEachBlock(end - start, kRowsPerTask, [&](Index first, Index last) {
+        GetKernel<StencilKernel>().evaluateRows(job, arrays, start + first, start + last);
+    });
     return true;
 }
 

@@ -7,7 +7,7 @@
 #include <opensubdiv/osd/cpuEvaluator.h>
 #include <opensubdiv/osd/ompEvaluator.h>
 
-#include "eval/parallel/for_parts.h"
+#include "eval/parallel/rows.h"
 
 namespace limn::eval {
 
@@ -92,8 +92,9 @@ void StencilEvaluator::EvalStencils(float const* source, BufferDescriptor const&
         return;
     }
     constexpr Index kRowsPerTask = 4096;
-    ForParts(start, end, kRowsPerTask, [&](Index first, Index last) {
-        EvaluateRange<Osd::CpuEvaluator>(source, sourceDesc, targets, rows, first, last);
+    ForEachBlock(end - start, kRowsPerTask, [&](Index first, Index last) {
+        EvaluateRange<Osd::CpuEvaluator>(source, sourceDesc, targets, rows, start + first,
+                                         start + last);
     });
 }
 

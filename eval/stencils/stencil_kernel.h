@@ -63,19 +63,23 @@ struct StencilSliceArrays {
     float const* weights[far_ext::kMaxWeightSets];
 };
 
-/// Evaluate rows, runs, groups and slices first..last-1. The same bits on every CPU and whichever
-/// ranges the work is cut into: one source, compiled per instruction set without contraction, every
-/// sum in a fixed order. That order is: grouped rows, column after column; sliced rows, entry after
-/// entry; rows and runs, the even entries and the odd ones, then both.
+/// Evaluates rows, runs, groups and slices first..last-1. The same bits on every CPU (see
+/// eval/kernels/dispatch.h) and whichever ranges the work is cut into. Sums are in this order:
+/// grouped rows, column after column; sliced rows, entry after entry; rows and runs, the even
+/// entries and the odd ones, then both.
 ///
 /// \pre all indices are valid; no target overlaps the source or another target
-void EvaluateStencilRows(StencilJob const& job, StencilRowArrays const& rows, Index first,
+struct StencilKernel {
+    void (*evaluateRows)(StencilJob const& job, StencilRowArrays const& rows, Index first,
                          Index last);
-void EvaluateStencilRuns(StencilJob const& job, StencilRunArrays const& runs, Index first,
+    void (*evaluateRuns)(StencilJob const& job, StencilRunArrays const& runs, Index first,
                          Index last);
-void EvaluateStencilGroups(StencilJob const& job, StencilGroupArrays const& groups, Index first,
+    void (*evaluateGroups)(StencilJob const& job, StencilGroupArrays const& groups, Index first,
                            Index last);
-void EvaluateStencilSlices(StencilJob const& job, StencilSliceArrays const& slices, Index first,
+    void (*evaluateSlices)(StencilJob const& job, StencilSliceArrays const& slices, Index first,
                            Index last);
+
+    static StencilKernel const sse2, avx2, avx512;
+};
 
 }  // namespace limn::eval

@@ -12,8 +12,8 @@ namespace limn::eval {
 ///          texel takes its guess from it and goes on by Newton's method on the exact map, mostly
 ///          for one step: a step from r texels off ends within bend / 2 r^2, so that how good an
 ///          answer is is known without another look at the map.
-/// Bits     one source, compiled per instruction set without contraction or library calls: the same
-///          bits on every CPU. A texel's answer depends on its cell, not on the texels beside it.
+/// Bits     the same on every CPU, see eval/kernels/dispatch.h. A texel's answer depends on its
+///          cell, not on the texels beside it.
 inline constexpr int kInversionLanes = 8;
 inline constexpr double kInversionEnd =
     1e-6;  ///< texels: an answer is this near, or says that it is not
@@ -39,18 +39,23 @@ struct InversionCell {
     double centre;   ///< (s, t) = (x, y) + centre
     double outside;  ///< farther than this outside the domain, in (s, t), is Outside
     double tolerance;     ///< texels
-    double guess[2][10];  ///< the fitted inverse; filled by FitInverse
+    double guess[2][10];  ///< the fitted inverse; filled by fitInverse
 };
 
-/// Fits the cell's inverse; where the cell is too small for that to pay, its linear part will do.
-void FitInverse(InversionCell& cell);
+struct InversionKernel {
+    /// Fits the cell's inverse; where the cell is too small for that to pay, its linear part will
+    /// do.
+    void (*fitInverse)(InversionCell& cell);
 
-/// Answers for `count` texels. All arrays reach to the next multiple of kInversionLanes.
-///
-/// \param targetX, targetY  about the local origin
-/// \param x, y   about the piece's centre
-/// \param where  see Whereabouts
-void InvertTextureMap(InversionCell const& cell, double const* targetX, double const* targetY,
+    /// Answers for `count` texels. All arrays reach to the next multiple of kInversionLanes.
+    ///
+    /// \param targetX, targetY  about the local origin
+    /// \param x, y   about the piece's centre
+    /// \param where  see Whereabouts
+    void (*invertMap)(InversionCell const& cell, double const* targetX, double const* targetY,
                       int count, double* x, double* y, Whereabouts* where);
+
+    static InversionKernel const sse2, avx2, avx512;
+};
 
 }  // namespace limn::eval

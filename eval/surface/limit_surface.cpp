@@ -5,10 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
+#include "eval/parallel/rows.h"
 #include "eval/surface/patch_polynomial.h"
 
 namespace limn::eval {
@@ -28,21 +27,18 @@ int RegularSize(bool isLoop) {
 std::vector<char> FindRegularVertices(Level const& level, bool isLoop) {
     std::vector<char> isRegular(static_cast<size_t>(level.GetNumVertices()), 0);
     int const valence = RegularValence(isLoop), size = RegularSize(isLoop);
-    tbb::parallel_for(
-        tbb::blocked_range<Index>(0, level.GetNumVertices(), 4096), [&](auto const& range) {
-            for (Index v = range.begin(); v != range.end(); ++v) {
-                auto const faces = level.GetVertexFaces(v);
-                auto const edges = level.GetVertexEdges(v);
-                bool regular = faces.size() == valence && edges.size() == valence &&
-                               !level.IsVertexBoundary(v) && !level.IsVertexNonManifold(v) &&
-                               level.GetVertexSharpness(v) <= 0.0f;
-                for (int i = 0; regular && i < valence; ++i) {
-                    regular = level.GetFaceVertices(faces[i]).size() == size &&
-                              level.GetEdgeSharpness(edges[i]) <= 0.0f;
-                }
-                isRegular[v] = regular;
-            }
-        });
+    ForEachRow(level.GetNumVertices(), [&](Index v) {
+        auto const faces = level.GetVertexFaces(v);
+        auto const edges = level.GetVertexEdges(v);
+        bool regular = faces.size() == valence && edges.size() == valence &&
+                       !level.IsVertexBoundary(v) && !level.IsVertexNonManifold(v) &&
+                       level.GetVertexSharpness(v) <= 0.0f;
+        for (int i = 0; regular && i < valence; ++i) {
+            regular = level.GetFaceVertices(faces[i]).size() == size &&
+                      level.GetEdgeSharpness(edges[i]) <= 0.0f;
+        }
+        isRegular[v] = regular;
+    });
     return isRegular;
 }
 
@@ -77,26 +73,25 @@ void LimitSurface::Classify() {
     };
     tbb::enumerable_thread_specific<Scratch> scratchOfThread(
         [&] { return Scratch{far_ext::FaceRingGatherer(level, _channel), {}, {}}; });
-    tbb::parallel_for(tbb::blocked_range<Index>(0, level.GetNumFaces(), 1024),
-                      [&](auto const& range) {
-                          auto& [gatherer, ring, points] = scratchOfThread.local();
-                          for (Index face = range.begin(); face != range.end(); ++face) {
-                              if (level.IsFaceHole(face)) continue;
-                              auto const corners = level.GetFaceVertices(face);
-                              bool const isPlain =
-                                  !isLinear && corners.size() == RegularSize(IsLoop()) &&
-                                  std::all_of(corners.begin(), corners.end(),
-                                              [&](Index v) { return isRegularVertex[v]; }) &&
-                                  (_channel < 0 || level.DoesFaceFVarTopologyMatch(face, _channel));
-                              if (isPlain) {
-                                  _kinds[face] = FaceKind::Plain;
-                                  continue;
-                              }
-                              gatherer.Gather(face, ring, points);
-                              _ringOfFace[face] = _cache->Find(ring);
-                              _kinds[face] = FaceKind::Ring;
-                          }
-                      });
+    constexpr Index kFacesPerBlock = 1024;
+    ForEachBlock(level.GetNumFaces(), kFacesPerBlock, [&](Index begin, Index end) {
+        auto& [gatherer, ring, points] = scratchOfThread.local();
+        for (Index face = begin; face < end; ++face) {
+            if (level.IsFaceHole(face)) continue;
+            auto const corners = level.GetFaceVertices(face);
+            bool const isPlain = !isLinear && corners.size() == RegularSize(IsLoop()) &&
+                                 std::all_of(corners.begin(), corners.end(),
+                                             [&](Index v) { return isRegularVertex[v]; }) &&
+                                 (_channel < 0 || level.DoesFaceFVarTopologyMatch(face, _channel));
+            if (isPlain) {
+                _kinds[face] = FaceKind::Plain;
+                continue;
+            }
+            gatherer.Gather(face, ring, points);
+            _ringOfFace[face] = _cache->Find(ring);
+            _kinds[face] = FaceKind::Ring;
+        }
+    });
 }
 
 namespace {

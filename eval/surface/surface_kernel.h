@@ -57,12 +57,18 @@ struct SurfaceBatch {
     unsigned* degenerate;  ///< one per sample: 1 where no safe tangent plane is found, see below
 };
 
-/// Evaluates a batch, [Bake 3].
-///
-/// A sample with |x_s x x_t|^2 < 1e-10 |x_s|^2 |x_t|^2 is flagged; its outputs are finite and to be
-/// replaced. The same bits on every CPU: one source, compiled per instruction set without
-/// contraction or library calls, and chosen once at start.
-void EvaluateSurface(SurfaceBatch<float> const& batch, Quantity quantity, bool isTriangle);
-void EvaluateSurface(SurfaceBatch<double> const& batch, Quantity quantity, bool isTriangle);
+template <class Real>
+struct SurfaceFunctions {
+    /// Evaluates a batch, [Bake 3].
+    ///
+    /// A sample with |x_s x x_t|^2 < 1e-10 |x_s|^2 |x_t|^2 is flagged; its outputs are finite and
+    /// to be replaced.
+    void (*evaluate)(SurfaceBatch<Real> const& batch, Quantity quantity, bool isTriangle);
+};
+
+/// See eval/kernels/dispatch.h: the same bits on every CPU.
+struct SurfaceKernel : SurfaceFunctions<float>, SurfaceFunctions<double> {
+    static SurfaceKernel const sse2, avx2, avx512;
+};
 
 }  // namespace limn::eval

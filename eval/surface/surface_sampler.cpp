@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "eval/kernels/dispatch.h"
+
 namespace limn::eval {
 
 SurfaceSampler::SurfaceSampler(FaceTree& tree, Quantity quantity, float orientation, Values values)
@@ -73,7 +75,8 @@ void SurfaceSampler::EvaluateBlock(Lanes<Real>& lanes, PatchRun const& run, size
                                    _planes.data(),
                                    kStride,
                                    _degenerate.data()};
-    EvaluateSurface(batch, _quantity, isTriangle);
+    SurfaceFunctions<Real> const& kernel = GetKernel<SurfaceKernel>();
+    kernel.evaluate(batch, _quantity, isTriangle);
     EvaluateValues(lanes, batch);
     if (_quantity == Quantity::Position) return;
     for (size_t i = 0; i < count; ++i) {
@@ -86,6 +89,7 @@ void SurfaceSampler::EvaluateBlock(Lanes<Real>& lanes, PatchRun const& run, size
 /// Three at a time: the kernel's "position" of other coefficients.
 template <class Real>
 void SurfaceSampler::EvaluateValues(Lanes<Real> const& lanes, SurfaceBatch<Real> const& batch) {
+    SurfaceFunctions<Real> const& kernel = GetKernel<SurfaceKernel>();
     bool const isTriangle = _tree.GetNumCoefficients() == 15;
     float* const values = _planes.data() + static_cast<size_t>(GetFirstValue()) * kStride;
     int const end = _values.first + _values.count;
@@ -95,11 +99,11 @@ void SurfaceSampler::EvaluateValues(Lanes<Real> const& lanes, SurfaceBatch<Real>
         part.coefficients = lanes.coefficients.data() + group * _tree.GetNumCoefficients();
         if (group == c) {
             part.out = values + static_cast<size_t>(c - _values.first) * kStride;
-            EvaluateSurface(part, Quantity::Position, isTriangle);
+            kernel.evaluate(part, Quantity::Position, isTriangle);
             continue;
         }
         part.out = _planes.data() + static_cast<size_t>(_numChannels) * kStride;
-        EvaluateSurface(part, Quantity::Position, isTriangle);
+        kernel.evaluate(part, Quantity::Position, isTriangle);
         for (int k = c; k < end; ++k) {
             std::copy_n(part.out + static_cast<size_t>(k - group) * kStride, batch.count,
                         values + static_cast<size_t>(k - _values.first) * kStride);

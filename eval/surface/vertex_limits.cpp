@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/surface/vertex_limits.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
+#include "eval/parallel/rows.h"
 #include "eval/surface/face_places.h"
 #include "eval/surface/surface_sample.h"
 
@@ -36,29 +35,28 @@ VertexLimits EvaluateVertexLimits(LimitSurface const& surface, std::span<double 
     VertexLimits limits{{values.begin(), values.end()}, std::vector<char>(chosen.size(), 0)};
     tbb::enumerable_thread_specific<FaceTree> trees(
         [&] { return FaceTree(surface, values, length); });
-    tbb::parallel_for(
-        tbb::blocked_range<Index>(0, surface.GetNumFaces(), 256), [&](auto const& range) {
-            if (onBlock) onBlock();
-            FaceTree& tree = trees.local();
-            for (Index face = range.begin(); face != range.end(); ++face) {
-                if (!surface.HasLimit(face)) continue;
-                auto const vertices = level.GetFaceVertices(face);
-                bool isBound = false;
-                for (int corner = 0; corner < vertices.size(); ++corner) {
-                    size_t const vertex = static_cast<size_t>(vertices[corner]);
-                    if (chosen[vertex] != face) continue;
-                    if (!isBound) tree.Bind(face);
-                    isBound = true;
-                    auto const place = GetCornerPlace(surface, face, corner);
-                    for (int c = 0; c < length; ++c) {
-                        limits
-                            .values[vertex * static_cast<size_t>(length) + static_cast<size_t>(c)] =
-                            EvaluateChannel(tree, place.domain, place.s, place.t, c, maxDepth);
-                    }
-                    limits.hasLimit[vertex] = 1;
+    constexpr Index kFacesPerBlock = 256;
+    ForEachBlock(surface.GetNumFaces(), kFacesPerBlock, [&](Index begin, Index end) {
+        if (onBlock) onBlock();
+        FaceTree& tree = trees.local();
+        for (Index face = begin; face < end; ++face) {
+            if (!surface.HasLimit(face)) continue;
+            auto const vertices = level.GetFaceVertices(face);
+            bool isBound = false;
+            for (int corner = 0; corner < vertices.size(); ++corner) {
+                size_t const vertex = static_cast<size_t>(vertices[corner]);
+                if (chosen[vertex] != face) continue;
+                if (!isBound) tree.Bind(face);
+                isBound = true;
+                auto const place = GetCornerPlace(surface, face, corner);
+                for (int c = 0; c < length; ++c) {
+                    limits.values[vertex * static_cast<size_t>(length) + static_cast<size_t>(c)] =
+                        EvaluateChannel(tree, place.domain, place.s, place.t, c, maxDepth);
                 }
+                limits.hasLimit[vertex] = 1;
             }
-        });
+        }
+    });
     return limits;
 }
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "far_ext/error.h"
+#include "far_ext/rows/breadth_first.h"
 #include "far_ext/rows/large_array.h"
 
 namespace limn::far_ext {
@@ -135,31 +136,12 @@ std::vector<std::array<Index, 2>> SplitAtCreases(CascadeMesh const& mesh, Rings&
     return along;
 }
 
-LargeArray<Index> OrderBreadthFirst(Rings const& rings) {
-    LargeArray<Index> order;
-    std::vector<char> isSeen(rings.kinds.size(), 0);
-    order.reserve(isSeen.size());
-    for (Index start = 0; start < static_cast<Index>(isSeen.size()); ++start) {
-        if (isSeen[start]) continue;
-        isSeen[start] = 1;
-        order.push_back(start);
-        for (size_t at = order.size() - 1; at < order.size(); ++at) {
-            for (int k = rings.offsets[order[at]]; k < rings.offsets[order[at] + 1]; ++k) {
-                Index const other = rings.neighbours[k];
-                if (isSeen[other]) continue;
-                isSeen[other] = 1;
-                order.push_back(other);
-            }
-        }
-    }
-    return order;
-}
-
-LargeArray<Index> Invert(std::span<Index const> vertices) {
-    LargeArray<Index> rows(vertices.size());
-    for (size_t row = 0; row < vertices.size(); ++row)
-        rows[vertices[row]] = static_cast<Index>(row);
-    return rows;
+BreadthFirstOrder OrderAlongRings(Rings const& rings) {
+    auto const visitNeighbours = [&](Index vertex, auto const& visit) {
+        for (int k = rings.offsets[vertex]; k < rings.offsets[vertex + 1]; ++k)
+            visit(rings.neighbours[k]);
+    };
+    return OrderBreadthFirst(static_cast<Index>(rings.kinds.size()), visitNeighbours);
 }
 
 Index FindBandwidth(CascadeLevel const& level) {
@@ -179,7 +161,7 @@ CascadeLevel BuildCascadeLevel(CascadeMesh const& mesh, std::span<Index const> c
                                BoundaryRule rule) {
     Rings rings = FindRings(mesh, rule);
     auto const along = SplitAtCreases(mesh, rings);
-    auto const order = OrderBreadthFirst(rings);
+    std::vector<Index> const order = OrderAlongRings(rings).rows;
     CascadeLevel level;
     level.faceSize = mesh.faceSize;
     level.vertices.reserve(order.size());
@@ -193,7 +175,8 @@ CascadeLevel BuildCascadeLevel(CascadeMesh const& mesh, std::span<Index const> c
     level.numSurface = ends[1];
     level.numUnknowns = ends[2];
 
-    LargeArray<Index> const rows = Invert(level.vertices), coarseRows = Invert(coarseVertices);
+    LargeArray<Index> const rows = InvertOrder(level.vertices),
+                            coarseRows = InvertOrder(coarseVertices);
     level.offsets.reserve(static_cast<size_t>(level.numUnknowns) + 1);
     level.offsets.push_back(0);
     level.neighbours.reserve(rings.neighbours.size());

@@ -39,8 +39,8 @@ enum class BoundaryRule {
     Natural  ///< no conormal derivative: boundary triangles degenerate with the levels
 };
 
-/// A level ready for sweeps: per row its ring of neighbours. Rows are numbered breadth-first along
-/// the rings, so that neighbours lie near each other in memory (2 to 3 times in sweeps).
+/// A level ready for sweeps: per row its ring of neighbours. Rows of each kind are numbered
+/// breadth-first along the rings, see rows/breadth_first.h.
 ///
 /// Order    surface rows with a closed ring; with an open one; rows on creases; rows that stay.
 /// Ring     on triangles a, b, c ... counter-clockwise; on quads edge neighbours and opposite

@@ -12,7 +12,7 @@ namespace limn::engine {
 inline constexpr double kCoveredTexels = 1e-4;
 
 /// A square of a texture piece on which the map is nearly linear: which texels may lie in it, and
-/// what eval::InvertTextureMap needs to know to say which do. Texels are those of the tile.
+/// what eval::InversionKernel needs to know to say which do. Texels are those of the tile.
 class TextureCell {
 public:
     /// \param x, y  the square's centre, about the piece's; \param half  half of its width

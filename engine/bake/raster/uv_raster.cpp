@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/bake/raster/texture_cell.h"
+#include "eval/kernels/dispatch.h"
 #include "eval/surface/patch_polynomial.h"
 #include "eval/surface/surface_sample.h"
 
@@ -194,9 +195,10 @@ void UVRaster::RasterCell(TexturePiece const& piece, double x, double y, double 
     }
     if (_rows.empty()) return;
     GatherTargets(piece, numTexels);
-    eval::FitInverse(cell.GetModel());
-    eval::InvertTextureMap(cell.GetModel(), _targetX.data(), _targetY.data(), numTexels, _x.data(),
-                           _y.data(), _where.data());
+    auto const& kernel = eval::GetKernel<eval::InversionKernel>();
+    kernel.fitInverse(cell.GetModel());
+    kernel.invertMap(cell.GetModel(), _targetX.data(), _targetY.data(), numTexels, _x.data(),
+                     _y.data(), _where.data());
     Accept(piece, hits);
 }
 

@@ -79,7 +79,7 @@ struct UVBounds {
 ///
 /// Search   the map's polynomial pieces are cut into cells on which it deviates from linear by less
 ///          than half a texel; the linear map of a cell, grown by that deviation, gives candidates
-///          row by row, and eval::InvertTextureMap finds where they lie on the exact map.
+///          row by row, and eval::InversionKernel finds where they lie on the exact map.
 /// Threads  one per thread
 class UVRaster {
 public:

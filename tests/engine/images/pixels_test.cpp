@@ -18,7 +18,7 @@
 #include "engine/images/exr_lookup.h"
 #include "engine/images/exr_writer.h"
 #include "engine/images/pixel_kernel.h"
-#include "eval/kernels/instruction_set.h"
+#include "eval/kernels/dispatch.h"
 
 namespace limn {
 namespace {
@@ -49,8 +49,8 @@ TEST(ConvertToHalf, RoundsLikeImath) {
     std::vector<uint16_t> halves(values.size());
     for (auto set : SupportedSets()) {
         ASSERT_TRUE(eval::SelectInstructionSet(set));
-        EXPECT_EQ(ConvertToHalf(values.data(), values.size(), halves.data(), values.size(),
-                                values.size(), 1),
+        EXPECT_EQ(eval::GetKernel<PixelKernel>().convertToHalf(
+                      values.data(), values.size(), halves.data(), values.size(), values.size(), 1),
                   0u);
         for (size_t i = 0; i < values.size(); ++i)
             ASSERT_EQ(halves[i], Imath::half(values[i]).bits()) << values[i];
@@ -60,7 +60,7 @@ TEST(ConvertToHalf, RoundsLikeImath) {
 TEST(ConvertToHalf, ClampsAndCountsWhatIsBeyondRange) {
     float const values[4] = {1e6f, -7e4f, 65504.0f, 2.0f};
     uint16_t halves[4];
-    EXPECT_EQ(ConvertToHalf(values, 4, halves, 4, 4, 1), 2u);
+    EXPECT_EQ(eval::GetKernel<PixelKernel>().convertToHalf(values, 4, halves, 4, 4, 1), 2u);
     EXPECT_EQ(halves[0], Imath::half(65504.0f).bits());
     EXPECT_EQ(halves[1], Imath::half(-65504.0f).bits());
 }

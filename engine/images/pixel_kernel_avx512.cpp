@@ -1,3 +1,0 @@
-// SPDX-License-Identifier: Apache-2.0
-#define LIMN_KERNEL avx512
-#include "engine/images/pixel_kernel.inc"
