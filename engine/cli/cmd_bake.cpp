@@ -17,7 +17,7 @@ namespace limn::cli {
 
 namespace {
 
-struct Arguments {
+struct BakeArguments {
     std::vector<std::string> meshes;
     std::string pattern, size = "2048", compression = "zip", against, fieldPath, space = "object",
                          encode;
@@ -76,7 +76,7 @@ engine::Encoding ParseEncoding(std::string const& text) {
             ParseNumber("--encode", std::string_view(text).substr(comma + 1))};
 }
 
-engine::BakeOptions MakeOptions(Arguments const& a, CommonOptions const& common) {
+engine::BakeOptions MakeOptions(BakeArguments const& a, CommonOptions const& common) {
     engine::BakeOptions options;
     options.pattern = a.pattern;
     options.maps = a.maps;
@@ -160,7 +160,7 @@ nlohmann::json ToJson(engine::AuditReport const& audit, engine::BakeReport const
             {"gauss_bonnet", components}};
 }
 
-int Run(Arguments const& a, Context& context) {
+int Run(BakeArguments const& a, Context& context) {
     engine::BakeOptions options = MakeOptions(a, context.GetCommon());
     if (a.meshes.size() > 1 && a.pattern.find("{mesh}") == std::string::npos) {
         throw Error(ErrorCode::BadOption, "-o: several meshes need {mesh} in the output's name");
@@ -195,7 +195,7 @@ int Run(Arguments const& a, Context& context) {
 }  // namespace
 
 Verb AddBake(CLI::App& app) {
-    auto const a = std::make_shared<Arguments>();
+    auto const a = std::make_shared<BakeArguments>();
     CLI::App* const verb =
         app.add_subcommand("bake", "Bake maps of the limit surface into textures");
     verb->add_option("MESH", a->meshes, "OBJ, PLY or OFF; several with {mesh} in the output's name")

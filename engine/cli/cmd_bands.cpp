@@ -7,12 +7,12 @@
 namespace limn::cli {
 
 Verb AddBands(CLI::App& app) {
-    struct Arguments {
+    struct BandsArguments {
         std::string mesh, prefix;
         int count = 0;
         FilterOptions filter;
     };
-    auto const a = std::make_shared<Arguments>();
+    auto const a = std::make_shared<BandsArguments>();
     CLI::App* const verb =
         app.add_subcommand("bands", "Split a mesh into frequency bands whose sum is the mesh");
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();

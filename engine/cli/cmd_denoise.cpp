@@ -7,13 +7,13 @@ namespace limn::cli {
 
 namespace {
 
-struct Arguments {
+struct FilterArguments {
     std::string mesh, output;
     int detail = 2, first = 2, last = 4, steps = 1;
     FilterOptions filter;
 };
 
-void AddArguments(CLI::App& verb, Arguments& a) {
+void AddArguments(CLI::App& verb, FilterArguments& a) {
     verb.add_option("MESH", a.mesh, "OBJ, PLY or OFF")->required();
     verb.add_option("-o,--output", a.output, "mesh to write, .obj or .ply")->required();
     verb.add_option("--steps", a.steps, "how often (default 1)")->check(CLI::Range(1, 1000));
@@ -22,7 +22,7 @@ void AddArguments(CLI::App& verb, Arguments& a) {
 
 /// Loads, filters the positions and writes, with the sizes before and after in the report.
 template <class Filter>
-int Run(Arguments const& a, Context& context, Filter const& filter) {
+int Run(FilterArguments const& a, Context& context, Filter const& filter) {
     engine::RequireMeshEnding(a.output);
     auto mesh = context.Load(a.mesh);
     eval::RequireFinite(mesh.scene.positions, 3);
@@ -38,7 +38,7 @@ int Run(Arguments const& a, Context& context, Filter const& filter) {
 }  // namespace
 
 Verb AddDenoise(CLI::App& app) {
-    auto const a = std::make_shared<Arguments>();
+    auto const a = std::make_shared<FilterArguments>();
     CLI::App* const verb =
         app.add_subcommand("denoise", "Smooth a mesh: keep its lowest frequency bands");
     AddArguments(*verb, *a);
@@ -54,7 +54,7 @@ Verb AddDenoise(CLI::App& app) {
 }
 
 Verb AddSharpen(CLI::App& app) {
-    auto const a = std::make_shared<Arguments>();
+    auto const a = std::make_shared<FilterArguments>();
     CLI::App* const verb =
         app.add_subcommand("sharpen", "Sharpen a mesh: add some of its frequency bands again");
     AddArguments(*verb, *a);

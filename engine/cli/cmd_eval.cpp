@@ -10,11 +10,11 @@ namespace limn::cli {
 
 namespace {
 
-struct Arguments {
+struct EvalArguments {
     std::string mesh, places, output, frames, evaluator;
 };
 
-void EvaluateFrames(Arguments const& a, engine::Scene const& scene,
+void EvaluateFrames(EvalArguments const& a, engine::Scene const& scene,
                     Far::TopologyRefiner const& refiner, engine::PlaceList const& places,
                     Context& context) {
     CommonOptions const& common = context.GetCommon();
@@ -33,7 +33,7 @@ void EvaluateFrames(Arguments const& a, engine::Scene const& scene,
 }  // namespace
 
 Verb AddEval(CLI::App& app) {
-    auto const a = std::make_shared<Arguments>();
+    auto const a = std::make_shared<EvalArguments>();
     CLI::App* const verb =
         app.add_subcommand("eval", "Evaluate the limit surface at listed places, in double");
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();

@@ -17,7 +17,7 @@ namespace limn::cli {
 
 namespace {
 
-struct Arguments {
+struct FieldArguments {
     std::string mesh, output, edgesPath, matchPath, harmonics, picture, atBoundary = "tangent";
     std::vector<double> view{1.0, 0.6, 0.8};
     std::vector<std::string> sources, sinks, vortices;
@@ -64,7 +64,7 @@ std::vector<eval::WantedVector> ReadWanted(std::string const& path,
     return wanted;
 }
 
-engine::FieldOptions MakeOptions(Arguments const& a, Far::TopologyLevel const& level) {
+engine::FieldOptions MakeOptions(FieldArguments const& a, Far::TopologyLevel const& level) {
     engine::FieldOptions options;
     for (auto const& text : a.sources)
         options.sources.push_back(ParseStrength(text, "--source", 1.0));
@@ -129,7 +129,7 @@ void AddToReport(nlohmann::json& report, engine::FieldAudit const& audit) {
                         {"index", singularity.index}});
 }
 
-int Run(Arguments const& a, Context& context) {
+int Run(FieldArguments const& a, Context& context) {
     Output const output = FindOutput(a.output);
     auto const mesh = context.Load(a.mesh);
     engine::FieldAudit audit;
@@ -169,7 +169,7 @@ int Run(Arguments const& a, Context& context) {
 }  // namespace
 
 Verb AddField(CLI::App& app) {
-    auto const a = std::make_shared<Arguments>();
+    auto const a = std::make_shared<FieldArguments>();
     CLI::App* const verb = app.add_subcommand(
         "field", "Design a tangent vector field, and subdivide it with the surface");
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();

@@ -13,7 +13,7 @@ namespace limn::cli {
 
 namespace {
 
-struct Arguments {
+struct FitArguments {
     std::string mesh, output, method = "auto";
     engine::FitOptions options;
     int level = 0;
@@ -117,7 +117,7 @@ std::string Explain(std::string const& path, engine::FitResult const& result, do
         tolerance, result.lambdaMin);
 }
 
-int Run(Arguments const& a, Context& context) {
+int Run(FitArguments const& a, Context& context) {
     engine::FitOptions options = a.options;
     options.method = ParseMethod(a.method);
     engine::RequireMeshEnding(a.output);
@@ -157,7 +157,7 @@ int Run(Arguments const& a, Context& context) {
 }  // namespace
 
 Verb AddFit(CLI::App& app) {
-    auto const a = std::make_shared<Arguments>();
+    auto const a = std::make_shared<FitArguments>();
     CLI::App* const verb = app.add_subcommand(
         "fit", "Find the control mesh whose limit surface passes through a mesh's vertices");
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();

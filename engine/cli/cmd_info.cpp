@@ -93,11 +93,11 @@ std::string ToText(engine::Scene const& scene, engine::MeshInfo const& info) {
 }  // namespace
 
 Verb AddInfo(CLI::App& app) {
-    struct Arguments {
+    struct InfoArguments {
         std::string mesh;
         bool asJson = false;
     };
-    auto const a = std::make_shared<Arguments>();
+    auto const a = std::make_shared<InfoArguments>();
     CLI::App* const verb = app.add_subcommand("info", "Tell what limn understood of a mesh");
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();
     verb->add_flag("--json", a->asJson, "one JSON object instead of text");

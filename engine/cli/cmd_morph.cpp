@@ -7,13 +7,13 @@
 namespace limn::cli {
 
 Verb AddMorph(CLI::App& app) {
-    struct Arguments {
+    struct MorphArguments {
         std::string from, to, prefix;
         int detail = 2, steps = 10;
         double rate = 0.8;
         FilterOptions filter;
     };
-    auto const a = std::make_shared<Arguments>();
+    auto const a = std::make_shared<MorphArguments>();
     CLI::App* const verb =
         app.add_subcommand("morph", "Make the meshes in between two meshes of the same topology");
     verb->add_option("FROM", a->from, "OBJ, PLY or OFF")->required();

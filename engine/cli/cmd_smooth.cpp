@@ -17,7 +17,7 @@ namespace limn::cli {
 
 namespace {
 
-struct Arguments {
+struct SmoothArguments {
     std::string mesh, output, widthMap, widthEdges, widthTexture,
         refinement = "quadrisect", solver = "cg", boundary = "fixed", picture;
     std::vector<double> view{1.0, 0.6, 0.8};
@@ -38,7 +38,7 @@ void Refuse(CLI::App const& verb, std::vector<char const*> const& names) {
     }
 }
 
-void CheckOptions(Arguments const& a, CLI::App const& verb) {
+void CheckOptions(SmoothArguments const& a, CLI::App const& verb) {
     engine::RequireMeshEnding(a.output);
     Refuse(verb, {"--width", "--width-factor"});
     Refuse(verb, {"--local", "--width-map", "--width-edges", "--width-texture"});
@@ -77,7 +77,7 @@ void CheckOptions(Arguments const& a, CLI::App const& verb) {
     }
 }
 
-engine::SmoothOptions MakeOptions(Arguments const& a, bool isDouble) {
+engine::SmoothOptions MakeOptions(SmoothArguments const& a, bool isDouble) {
     engine::SmoothOptions options = a.options;
     if (a.refinement == "bisect") options.refinement = engine::SmoothRefinement::Bisect;
     if (a.boundary == "natural") options.boundary = far_ext::BoundaryRule::Natural;
@@ -90,7 +90,7 @@ engine::SmoothOptions MakeOptions(Arguments const& a, bool isDouble) {
     return options;
 }
 
-engine::FilterWidths MakeWidths(Arguments const& a, CLI::App const& verb,
+engine::FilterWidths MakeWidths(SmoothArguments const& a, CLI::App const& verb,
                                 engine::Scene const& scene, Far::TopologyLevel const& level) {
     double const width = verb.count("--width")
                              ? a.width
@@ -166,7 +166,7 @@ std::string Explain(std::string const& path, engine::SmoothReport const& found) 
         path, &missed - found.levels.data() + 1, missed.residual, missed.sweeps);
 }
 
-int Run(Arguments const& a, CLI::App const& verb, Context& context) {
+int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     CheckOptions(a, verb);
     auto [scene, refiner] =
         context.Load(a.mesh, Context::Defects::Keep);  // engine::Smooth warns of them, or refuses
@@ -201,7 +201,7 @@ int Run(Arguments const& a, CLI::App const& verb, Context& context) {
 }  // namespace
 
 Verb AddSmooth(CLI::App& app) {
-    auto const a = std::make_shared<Arguments>();
+    auto const a = std::make_shared<SmoothArguments>();
     CLI::App* const verb =
         app.add_subcommand("smooth", "Refine a mesh and smooth it by curvature motion, to a width");
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();

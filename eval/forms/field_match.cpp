@@ -17,7 +17,7 @@ namespace limn::eval {
 
 namespace {
 
-using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+using RowMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
 constexpr double kSmoothness = 1e-6;  // of curl and divergence, against the vectors
@@ -31,7 +31,7 @@ std::vector<double> MatchVectors(Far::TopologyLevel const& level, std::span<doub
     Index const numEdges = level.GetNumEdges();
     far_ext::SparseRows const faceVectorRows = far_ext::BuildFaceVectors(level, positions),
                               curlRows = far_ext::BuildD1(level);
-    Matrix const faceVectors = far_ext::AsMatrix(faceVectorRows, numEdges);
+    RowMatrix const faceVectors = far_ext::AsMatrix(faceVectorRows, numEdges);
     double const meanArea = std::accumulate(stars.area.begin(), stars.area.end(), 0.0) /
                             static_cast<double>(stars.area.size());
 
@@ -55,9 +55,9 @@ std::vector<double> MatchVectors(Far::TopologyLevel const& level, std::span<doub
                 faces.empty() ? 0.0 : weight * wanted[i].vector[static_cast<size_t>(axis)];
         }
     }
-    Matrix pick(right.size(), faceVectors.rows());
+    RowMatrix pick(right.size(), faceVectors.rows());
     pick.setFromTriplets(picks.begin(), picks.end());
-    Matrix const fit = pick * faceVectors;
+    RowMatrix const fit = pick * faceVectors;
 
     Triplets divergences;
     std::vector<double> dualAreas(static_cast<size_t>(level.GetNumVertices()), 0.0);
@@ -73,16 +73,16 @@ std::vector<double> MatchVectors(Far::TopologyLevel const& level, std::span<doub
                                          std::sqrt(dualAreas[vertex]));
         }
     }
-    Matrix divergence(level.GetNumVertices(), numEdges);
+    RowMatrix divergence(level.GetNumVertices(), numEdges);
     divergence.setFromTriplets(divergences.begin(), divergences.end());
-    Matrix curl = far_ext::AsMatrix(curlRows, numEdges);
+    RowMatrix curl = far_ext::AsMatrix(curlRows, numEdges);
     for (Index face = 0; face < level.GetNumFaces(); ++face)
         curl.row(face) /= std::sqrt(stars.area[face]);
 
-    Eigen::SparseMatrix<double> system = Matrix(fit.transpose() * fit);
-    system += Eigen::SparseMatrix<double>(
-        Matrix(kSmoothness * meanArea *
-               (Matrix(divergence.transpose() * divergence) + Matrix(curl.transpose() * curl))));
+    Eigen::SparseMatrix<double> system = RowMatrix(fit.transpose() * fit);
+    system += Eigen::SparseMatrix<double>(RowMatrix(
+        kSmoothness * meanArea *
+        (RowMatrix(divergence.transpose() * divergence) + RowMatrix(curl.transpose() * curl))));
     Eigen::SparseMatrix<double> rest(numEdges, numEdges);
     rest.setIdentity();
     for (Index edge = 0; edge < numEdges; ++edge)

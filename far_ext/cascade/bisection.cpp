@@ -52,7 +52,7 @@ int FindLongestEdge(Index const* face, std::span<double const> positions) {
 }
 
 /// A corner of a triangle: its vertex and face-varying value.
-struct Corner {
+struct CutCorner {
     Index vertex, value;
 };
 
@@ -69,18 +69,18 @@ struct Halves {
 
     /// Cuts a triangle whose refinement edge is (face[0], face[1]), and its halves. New triangles
     /// have their refinement edge, opposite the newest vertex, first as well.
-    void Cut(std::array<Corner, 3> const& face, Index baseFace) {
+    void Cut(std::array<CutCorner, 3> const& face, Index baseFace) {
         Index const edge = edges.Find(face[0].vertex, face[1].vertex),
                     middle = edge < 0 ? -1 : middles[edge];
         if (middle < 0) {
-            for (Corner const& corner : face) {
+            for (CutCorner const& corner : face) {
                 faces.push_back(corner.vertex);
                 if (fvarValues) fvarValues->push_back(corner.value);
             }
             baseFaces.push_back(baseFace);
             return;
         }
-        Corner const cut{middle, fvarValues ? CutValue(face[0].value, face[1].value) : 0};
+        CutCorner const cut{middle, fvarValues ? CutValue(face[0].value, face[1].value) : 0};
         Cut({face[2], face[0], cut}, baseFace);
         Cut({face[1], face[2], cut}, baseFace);
     }
@@ -155,7 +155,7 @@ CascadeMesh const& Bisection::Refine() {
                   _fvarParents};
     for (size_t face = 0; face < _refinementEdges.size(); ++face) {
         size_t const k = static_cast<size_t>(_refinementEdges[face]);
-        auto const corner = [&](size_t i) -> Corner {
+        auto const corner = [&](size_t i) -> CutCorner {
             size_t const at = 3 * face + (k + i) % 3;
             return {coarse.faces[at], coarseValues.empty() ? 0 : coarseValues[at]};
         };

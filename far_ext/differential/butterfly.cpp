@@ -2,6 +2,7 @@
 #include "far_ext/differential/butterfly.h"
 
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -13,7 +14,6 @@ namespace limn::far_ext {
 namespace {
 
 using Level = Far::TopologyLevel;
-constexpr double kPi = 3.14159265358979323846;
 
 class ButterflyRows {
 public:
@@ -88,7 +88,7 @@ private:
                          kFour[] = {3.0 / 8, 0.0, -1.0 / 8, 0.0};
         if (valence == 3) return kThree[j];
         if (valence == 4) return kFour[j];
-        double const angle = 2.0 * kPi * j / valence;
+        double const angle = 2.0 * std::numbers::pi * j / valence;
         return (0.25 + std::cos(angle) + 0.5 * std::cos(2.0 * angle)) / valence;
     }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <nanoflann.hpp>
@@ -17,7 +18,6 @@ namespace {
 
 using Level = Far::TopologyLevel;
 using Point = std::array<double, 3>;
-constexpr double kPi = 3.14159265358979323846;
 
 /// The neighbours of a vertex along the boundary; {-1, -1} inside.
 std::array<Index, 2> GetBoundaryNeighbours(Level const& level, Index vertex) {
@@ -228,7 +228,7 @@ AreaLaplacian BuildHeatLaplacian(Level const& level, std::span<double const> pos
     }
     double const edge = FindMeanEdgeLength(level, positions), time = edge * edge;
     double const squaredRadius = 4.0 * time * std::log(1.0 / kLeftOut),
-                 scale = 1.0 / (4.0 * kPi * time * time);
+                 scale = 1.0 / (4.0 * std::numbers::pi * time * time);
 
     using Tree =
         nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointCloud>,

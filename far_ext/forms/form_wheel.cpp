@@ -10,8 +10,6 @@ namespace {
 
 using Chain = std::vector<double>;  // over the wheel's faces, or over its edges
 
-constexpr double kPi = std::numbers::pi;
-
 /// The circulant whose rows spread a 2-form over the corners of `count` faces round a vertex:
 /// [Forms 3.4] (Loop), [Forms 4] (Doo-Sabin's weights).
 ///
@@ -23,10 +21,11 @@ std::vector<double> MakeCirculant(Sdc::SchemeType scheme, int count) {
         c[0] = (count + 5.0) / (4.0 * count);
         for (int m = 1; m < count; ++m)
             c[static_cast<size_t>(m)] =
-                (3.0 + 2.0 * std::cos(2.0 * kPi * m / count)) / (4.0 * count);
+                (3.0 + 2.0 * std::cos(2.0 * std::numbers::pi * m / count)) / (4.0 * count);
         return c;
     }
-    double const beta = count >= 6 ? 0.25 : 1.0 / (8.0 * (1.0 - std::cos(2.0 * kPi / count)));
+    double const beta =
+        count >= 6 ? 0.25 : 1.0 / (8.0 * (1.0 - std::cos(2.0 * std::numbers::pi / count)));
     auto const add = [&](int place, double weight) {
         c[static_cast<size_t>(((place % count) + count) % count)] += weight;
     };
@@ -241,7 +240,7 @@ EdgeChain MakeCatmarkEven(Wheel const& wheel, int i) {
 }  // namespace
 
 double GetLoopWeight(int k) {
-    double const c = 0.375 + 0.25 * std::cos(2.0 * kPi / k);
+    double const c = 0.375 + 0.25 * std::cos(2.0 * std::numbers::pi / k);
     return k == 6 ? 0.0625 : (0.625 - c * c) / k;
 }
 

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+# shellcheck shell=sh
+# The parts of ./check, a function each, run in the checkout's root. Their arguments are ctest's.
+
+# in_folder NAME KIND [COMMAND...]: runs one of setup.sh's functions on build/NAME, with the packages
+# of that kind. Runs that start at once take turns.
+in_folder() {
+    build="build/$1"
+    kind=$2
+    shift 2
+    mkdir -p "$build"
+    (
+        flock 9
+        install_packages "$kind"
+        "$@"
+    ) 9>"$build/.lock"
+}
+
+run_tests() {
+    folder="build/$1"
+    shift
+    ctest --test-dir "$folder" --output-on-failure -j "$(nproc)" "$@"
+}
+
+check_tests() {
+    in_folder check check build_target all -DLIMN_DEVELOPER=ON
+    run_tests check "$@"
+}
+
+check_clang() {
+    in_folder clang tools build_target all -DLIMN_DEVELOPER=ON -DCMAKE_CXX_COMPILER=clang++-19
+    run_tests clang "$@"
+}
+
+# Assertions are on here; debug information goes as far as a stack needs.
+check_sanitizers() {
+    in_folder asan tools build_target all -DLIMN_DEVELOPER=ON -DLIMN_SANITIZE=address,undefined \
+        -DCMAKE_CXX_FLAGS_RELEASE='-O1 -g1'
+    (
+        export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+        run_tests asan "$@"
+    )
+}
+
+# list_sources PATTERN...: of the files in the folders of code, those whose names fit.
+list_sources() {
+    for pattern in "$@"; do find far_ext eval engine tests bench examples -name "$pattern"; done
+}
+
+check_format() {
+    in_folder clang tools :
+    say "format of sources and scripts"
+    list_sources '*.h' '*.cpp' | xargs clang-format-19 --dry-run --Werror
+    shellcheck -x limn check .ci/run scripts/*.sh tests/install/run.sh
+}
+
+# list_changed COMMIT: the sources that changed since; for a header, its source or one that includes
+# it stands in.
+list_changed() {
+    git diff --name-only --diff-filter=d "$1" -- '*.h' '*.cpp' | while read -r file; do
+        case $file in
+        *.h)
+            if [ -e "${file%.h}.cpp" ]; then
+                echo "${file%.h}.cpp"
+            else
+                list_sources '*.cpp' | xargs grep -lF "\"${file#tests/}\"" | head -n 1
+            fi
+            ;;
+        *) echo "$file" ;;
+        esac
+    done | sort -u
+}
+
+# tidy SECONDS SOURCE...: clang-tidy, for no longer than that. It reads how sources are compiled from
+# the folder of the clang build, where nothing needs to be built for that.
+tidy() {
+    seconds=$1
+    shift
+    if [ $# -eq 0 ]; then return 0; fi
+    in_folder clang tools configure -DLIMN_DEVELOPER=ON -DCMAKE_CXX_COMPILER=clang++-19
+    say "clang-tidy on $# sources"
+    log=build/clang/tidy.log
+    status=0
+    timeout "$seconds" run-clang-tidy-19 -quiet -j "$(nproc)" -p build/clang "$@" >"$log" 2>&1 ||
+        status=$?
+    if grep -E -A3 ' (warning|error): ' "$log" >&2; then die "clang-tidy found something" "$log" 0; fi
+    case $status in
+    0) ;;
+    124) say "clang-tidy has run for $seconds seconds; the rest is not looked at" ;;
+    *) die "clang-tidy failed" "$log" ;;
+    esac
+}
+
+# Names of sources hold no spaces.
+# shellcheck disable=SC2046
+check_tidy() { tidy 7200 $(list_sources '*.cpp'); }
+
+# shellcheck disable=SC2046,SC2154 # ./check has read $tidy_since
+check_tidy_since() { tidy 600 $(list_changed "$tidy_since"); }
