@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/bake/dilate.h"
-#include "engine/bake/maps/maps.h"
+#include "engine/bake/maps/portable_math.h"
 #include "engine/bake/mip_chain.h"
 #include "engine/images/exr_lookup.h"
 #include "engine/images/exr_writer.h"
