@@ -16,6 +16,8 @@
 #include "eval/differential/subdivide_values.h"
 #include "far_ext/differential/laplacian.h"
 #include "far_ext/error.h"
+#include "far_ext/rows/points.h"
+#include "far_ext/topology/boundary.h"
 
 namespace limn::engine {
 
@@ -42,19 +44,20 @@ void ApplyEdit(CurvatureEdit const& edit, Level const& level, Rows const& positi
         for (double& magnitude : split.magnitudes) magnitude *= orientation;
         deltas = eval::JoinDirMag(split);
     }
+    far_ext::MutablePoints const points(deltas);
     for (auto const& [vertex, factor] : edit.factors) {
-        for (size_t c = 0; c < 3; ++c) deltas[3 * static_cast<size_t>(vertex) + c] *= factor;
+        points[vertex] *= factor;
     }
     for (auto const& [vertex, axis, degrees] : edit.rotations) {
         Eigen::Vector3d const direction = Eigen::Vector3d(axis.data()).normalized();
-        Eigen::Map<Eigen::Vector3d> delta(&deltas[3 * static_cast<size_t>(vertex)]);
-        delta = Eigen::AngleAxisd(degrees * std::acos(-1.0) / 180.0, direction) *
-                Eigen::Vector3d(delta);
+        points[vertex] = Eigen::AngleAxisd(degrees * std::acos(-1.0) / 180.0, direction) *
+                         Eigen::Vector3d(points[vertex]);
     }
 }
 
 /// A boundary vertex has no mean curvature of its own; it takes the mean of its inner neighbours'.
 void ExtendToBoundary(Level const& level, Rows& deltas) {
+    far_ext::MutablePoints const points(deltas);
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
         if (!level.IsVertexBoundary(vertex)) continue;
         Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -62,10 +65,10 @@ void ExtendToBoundary(Level const& level, Rows& deltas) {
         for (Index edge : level.GetVertexEdges(vertex)) {
             Index const other = far_ext::GetOtherEnd(level, edge, vertex);
             if (level.IsVertexBoundary(other)) continue;
-            sum += Eigen::Vector3d(&deltas[3 * static_cast<size_t>(other)]);
+            sum += points[other];
             ++count;
         }
-        Eigen::Vector3d::Map(&deltas[3 * static_cast<size_t>(vertex)]) = sum / std::max(1, count);
+        points[vertex] = sum / std::max(1, count);
     }
 }
 

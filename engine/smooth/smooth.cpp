@@ -10,8 +10,9 @@
 #include "engine/smooth/smooth_checks.h"
 #include "eval/cascade/critical_width.h"
 #include "eval/cascade/enclosed_volume.h"
-#include "far_ext/differential/laplacian.h"
 #include "far_ext/error.h"
+#include "far_ext/rows/points.h"
+#include "far_ext/topology/boundary.h"
 
 namespace limn::engine {
 
@@ -40,22 +41,21 @@ double FindUnit(Scene const& scene) {
 
 /// Values of the coarser mesh' vertices, each finer one taking its first parent's.
 std::vector<int> Inherit(CascadeMesh const& mesh, std::vector<int> const& coarse) {
-    std::vector<int> fine(static_cast<size_t>(mesh.numVertices));
+    std::vector<int> fine(mesh.numVertices);
     for (size_t vertex = 0; vertex < fine.size(); ++vertex)
-        fine[vertex] = coarse[mesh.parents[static_cast<size_t>(mesh.parentOffsets[vertex])]];
+        fine[vertex] = coarse[mesh.parents[mesh.parentOffsets[vertex]]];
     return fine;
 }
 
 /// Positions of the coarser mesh, interpolated linearly as the cascade does.
 std::vector<double> Interpolate(CascadeMesh const& mesh, std::vector<double> const& coarse) {
-    std::vector<double> fine(3 * static_cast<size_t>(mesh.numVertices), 0.0);
-    for (size_t vertex = 0; vertex < fine.size() / 3; ++vertex) {
+    std::vector<double> fine(size_t{3} * mesh.numVertices, 0.0);
+    far_ext::Points const parents(coarse);
+    far_ext::MutablePoints const points(fine);
+    for (Index vertex = 0; vertex < mesh.numVertices; ++vertex) {
         int const begin = mesh.parentOffsets[vertex], end = mesh.parentOffsets[vertex + 1];
-        for (size_t c = 0; c < 3; ++c) {
-            for (int k = begin; k < end; ++k)
-                fine[3 * vertex + c] += coarse[3 * static_cast<size_t>(mesh.parents[k]) + c];
-            fine[3 * vertex + c] /= end - begin;
-        }
+        for (int k = begin; k < end; ++k) points[vertex] += parents[mesh.parents[k]];
+        points[vertex] /= end - begin;
     }
     return fine;
 }
@@ -188,10 +188,11 @@ private:
         auto positions = Times(_unit, _cascade.GetPositions());
         auto const widths = _cascade.GetWidths();
         std::vector<double> force = eval::FindVolumeNormals(mesh, positions);
+        far_ext::MutablePoints const forces(force);
         for (Index row = 0; row < _rows.GetNumRows(); ++row) {
-            size_t const vertex = static_cast<size_t>(_rows.vertices[row]);
+            Index const vertex = _rows.vertices[row];
             double const share = row < _rows.numSurface ? widths[vertex] * widths[vertex] / 2 : 0.0;
-            for (size_t i = 3 * vertex; i < 3 * vertex + 3; ++i) force[i] *= share;
+            forces[vertex] *= share;
         }
         auto const directions = _cascade.Filter(force, CountIterations());
         auto const wanted = eval::MeasureVolumes(mesh, _ofVertex, _components.count, _start);

@@ -6,7 +6,8 @@
 #include <Eigen/Dense>
 #include <tbb/parallel_for.h>
 
-#include "far_ext/differential/laplacian.h"
+#include "far_ext/rows/points.h"
+#include "far_ext/topology/boundary.h"
 
 namespace limn::eval {
 
@@ -14,23 +15,19 @@ namespace {
 
 using Level = Far::TopologyLevel;
 using Vector = Eigen::Vector3d;
-
-Vector Get(std::span<double const> values, Index i) {
-    return Vector(values.data() + 3 * static_cast<size_t>(i));
-}
+using far_ext::MutablePoints;
+using far_ext::Points;
 
 /// The angle by which faces turn across an edge; positive where it is convex.
-double FindDihedral(Level const& level, std::span<double const> positions,
-                    std::span<double const> normals, Index edge) {
+double FindDihedral(Level const& level, Points points, Points normals, Index edge) {
     auto const faces = level.GetEdgeFaces(edge);
     Index const from = level.GetEdgeVertices(edge)[0], to = level.GetEdgeVertices(edge)[1];
-    Vector const a = Get(normals, faces[0]), b = Get(normals, faces[1]);
+    Vector const a = normals[faces[0]], b = normals[faces[1]];
     // The edge as the first face goes round it.
     auto const vertices = level.GetFaceVertices(faces[0]);
     int const corner = level.GetEdgeFaceLocalIndices(edge)[0];
     bool const isForward = vertices[corner] == from;
-    Vector const along =
-        (Get(positions, to) - Get(positions, from)).normalized() * (isForward ? 1.0 : -1.0);
+    Vector const along = (points[to] - points[from]).normalized() * (isForward ? 1.0 : -1.0);
     return std::atan2(a.cross(b).dot(along), a.dot(b));
 }
 
@@ -45,31 +42,32 @@ bool HasCurvature(Level const& level, Index vertex) {
 }  // namespace
 
 std::vector<double> FindFaceNormals(Level const& level, std::span<double const> positions) {
-    std::vector<double> normals(3 * static_cast<size_t>(level.GetNumFaces()));
+    std::vector<double> normals(size_t{3} * level.GetNumFaces());
+    Points const points(positions);
+    MutablePoints const sums(normals);
     tbb::parallel_for(0, level.GetNumFaces(), [&](Index face) {
         auto const vertices = level.GetFaceVertices(face);
-        Vector const origin = Get(positions, vertices[0]);
+        Vector const origin = points[vertices[0]];
         Vector sum = Vector::Zero();
         for (int i = 1; i + 1 < vertices.size(); ++i) {
-            sum += 0.5 * (Get(positions, vertices[i]) - origin)
-                             .cross(Get(positions, vertices[i + 1]) - origin);
+            sum += 0.5 * (points[vertices[i]] - origin).cross(points[vertices[i + 1]] - origin);
         }
-        Vector::Map(&normals[3 * static_cast<size_t>(face)]) = sum;
+        sums[face] = sum;
     });
     return normals;
 }
 
 MeshCurvature MeasureMeshCurvature(Level const& level, std::span<double const> positions,
                                    double orientation) {
-    auto const numVertices = static_cast<size_t>(level.GetNumVertices());
-    std::vector<double> const normals = FindFaceNormals(level, positions);
-    std::vector<double> bends(static_cast<size_t>(level.GetNumEdges()), 0.0);  // |e|/2 beta / |e|^2
+    size_t const numVertices = level.GetNumVertices();
+    std::vector<double> const faceNormals = FindFaceNormals(level, positions);
+    Points const points(positions), normals(faceNormals);
+    std::vector<double> bends(level.GetNumEdges(), 0.0);  // |e|/2 beta / |e|^2
     tbb::parallel_for(0, level.GetNumEdges(), [&](Index edge) {
         if (level.GetEdgeFaces(edge).size() != 2) return;
         auto const ends = level.GetEdgeVertices(edge);
-        double const length = (Get(positions, ends[1]) - Get(positions, ends[0])).norm();
-        if (length > 0.0)
-            bends[edge] = 0.5 * FindDihedral(level, positions, normals, edge) / length;
+        double const length = (points[ends[1]] - points[ends[0]]).norm();
+        if (length > 0.0) bends[edge] = 0.5 * FindDihedral(level, points, normals, edge) / length;
     });
     MeshCurvature curvature{std::vector<double>(numVertices, 0.0),
                             std::vector<double>(numVertices, 0.0),
@@ -79,16 +77,15 @@ MeshCurvature MeasureMeshCurvature(Level const& level, std::span<double const> p
         Vector normal = Vector::Zero();
         double area = 0.0;
         for (Index face : level.GetVertexFaces(vertex)) {
-            normal += Get(normals, face);
-            area += Get(normals, face).norm() / level.GetFaceVertices(face).size();
+            normal += normals[face];
+            area += normals[face].norm() / level.GetFaceVertices(face).size();
         }
         if (!(area > 0.0) || !(normal.norm() > 0.0)) return;
         normal.normalize();
         Vector const u = normal.unitOrthogonal(), v = normal.cross(u);
         double uu = 0.0, uv = 0.0, vv = 0.0;
         for (Index edge : level.GetVertexEdges(vertex)) {
-            Vector const side =
-                Get(positions, far_ext::GetOtherEnd(level, edge, vertex)) - Get(positions, vertex);
+            Vector const side = points[far_ext::GetOtherEnd(level, edge, vertex)] - points[vertex];
             double const a = side.dot(u), b = side.dot(v), bend = orientation * bends[edge] / area;
             uu += bend * a * a;
             uv += bend * a * b;

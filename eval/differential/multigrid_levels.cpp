@@ -5,8 +5,8 @@
 #include <span>
 #include <utility>
 
-#include "far_ext/differential/laplacian.h"
 #include "far_ext/rows/breadth_first.h"
+#include "far_ext/topology/boundary.h"
 
 namespace limn::eval {
 
@@ -29,13 +29,13 @@ far_ext::BreadthFirstOrder OrderAlongEdges(Level const& level, FixedVertices fix
 }
 
 void ListNeighbours(Level const& level, std::span<Index const> rows, MultigridLevel& graph) {
-    size_t const numUnknowns = static_cast<size_t>(graph.numUnknowns);
+    size_t const numUnknowns = graph.numUnknowns;
     graph.offsets.assign(numUnknowns + 1, 0);
     for (size_t row = 0; row < numUnknowns; ++row) {
         graph.offsets[row + 1] =
             graph.offsets[row] + level.GetVertexEdges(graph.vertices[row]).size();
     }
-    graph.neighbours.resize(static_cast<size_t>(graph.offsets.back()));
+    graph.neighbours.resize(graph.offsets.back());
     for (size_t row = 0, at = 0; row < numUnknowns; ++row) {
         Index const vertex = graph.vertices[row];
         for (Index edge : level.GetVertexEdges(vertex))
@@ -57,8 +57,8 @@ void ListBlocks(std::span<Index const> componentOffsets, MultigridLevel& graph) 
 
 void LinkToFiner(Level const& level, std::span<Index const> rows, MultigridLevel& graph,
                  std::span<Index const> fineRows, MultigridLevel& fine) {
-    fine.parents.assign(static_cast<size_t>(fine.numUnknowns), {-1, -1});
-    graph.children.resize(static_cast<size_t>(graph.numUnknowns));
+    fine.parents.assign(fine.numUnknowns, {-1, -1});
+    graph.children.resize(graph.numUnknowns);
     for (Index row = 0; row < graph.numUnknowns; ++row) {
         Index const child = fineRows[level.GetVertexChildVertex(graph.vertices[row])];
         graph.children[row] = child;

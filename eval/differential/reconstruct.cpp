@@ -8,21 +8,21 @@
 
 #include "eval/differential/curve.h"
 #include "eval/parallel/rows.h"
-#include "far_ext/differential/laplacian.h"
 #include "far_ext/error.h"
+#include "far_ext/rows/points.h"
+#include "far_ext/topology/boundary.h"
 
 namespace limn::eval {
 
 namespace {
 
-DoubleLanes Get(std::span<double const> values, Index vertex) {
-    double const* const p = values.data() + 3 * static_cast<size_t>(vertex);
+DoubleLanes Get(far_ext::Points values, Index vertex) {
+    auto const p = values[vertex];
     return {p[0], p[1], p[2], 0.0};
 }
 
-void Set(std::span<double> values, Index vertex, DoubleLanes const& row) {
-    for (Index c = 0; c < 3; ++c)
-        values[3 * static_cast<size_t>(vertex) + static_cast<size_t>(c)] = row[c];
+void Set(far_ext::MutablePoints values, Index vertex, DoubleLanes const& row) {
+    values[vertex] = row.head<3>();
 }
 
 double RelativeDefect(DoubleLanes const& sum, double sumOfLengths) {
@@ -96,7 +96,7 @@ double Reconstructor::SolveLoop(std::vector<Index> const& loop, Index handle,
     for (Index vertex : loop) ofLoop.push_back(Get(deltas, vertex));
     double const defect = SolveClosedCurve(ofLoop, points);
     DoubleLanes const place = Get(positions, handle);
-    auto const at = static_cast<size_t>(std::find(loop.begin(), loop.end(), handle) - loop.begin());
+    size_t const at = std::find(loop.begin(), loop.end(), handle) - loop.begin();
     for (size_t i = 0; i < loop.size(); ++i)
         Set(positions, loop[i], points[i] - points[at] + place);
     return defect;

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "far_ext/differential/laplacian.h"
 #include "far_ext/error.h"
+#include "far_ext/topology/boundary.h"
 
 namespace limn::far_ext {
 

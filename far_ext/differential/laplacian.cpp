@@ -11,24 +11,14 @@
 #include <nanoflann.hpp>
 
 #include "far_ext/error.h"
+#include "far_ext/rows/points.h"
+#include "far_ext/topology/boundary.h"
 
 namespace limn::far_ext {
 
 namespace {
 
 using Level = Far::TopologyLevel;
-using Point = std::array<double, 3>;
-
-/// The neighbours of a vertex along the boundary; {-1, -1} inside.
-std::array<Index, 2> GetBoundaryNeighbours(Level const& level, Index vertex) {
-    std::array<Index, 2> neighbours{-1, -1};
-    size_t count = 0;
-    for (Index edge : level.GetVertexEdges(vertex)) {
-        if (level.IsEdgeBoundary(edge) && count < 2)
-            neighbours[count++] = GetOtherEnd(level, edge, vertex);
-    }
-    return neighbours;
-}
 
 /// Appends the curve rule's row of a boundary vertex. \return false for an inner vertex
 bool AddBoundaryRow(Level const& level, Index vertex, SparseRows& rows) {
@@ -42,18 +32,6 @@ bool AddBoundaryRow(Level const& level, Index vertex, SparseRows& rows) {
     return true;
 }
 
-Point PointOf(std::span<double const> positions, Index vertex) {
-    double const* const p = positions.data() + 3 * static_cast<size_t>(vertex);
-    return {p[0], p[1], p[2]};
-}
-
-Point Between(Point const& from, Point const& to) {
-    return {to[0] - from[0], to[1] - from[1], to[2] - from[2]};
-}
-double Dot(Point const& a, Point const& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /// A triangle's vertices, cotangents and squared sides; side k lies opposite corner k.
 struct Triangle {
     std::array<Index, 3> vertices;
@@ -61,7 +39,7 @@ struct Triangle {
     double area;
 };
 
-Triangle MeasureTriangle(Level const& level, std::span<double const> positions, Index face) {
+Triangle MeasureTriangle(Level const& level, Points points, Index face) {
     auto const vertices = level.GetFaceVertices(face);
     if (vertices.size() != 3) {
         throw Error(ErrorCode::Unsupported,
@@ -71,12 +49,14 @@ Triangle MeasureTriangle(Level const& level, std::span<double const> positions, 
     Triangle triangle{{vertices[0], vertices[1], vertices[2]}, {}, {}, 0.0};
     std::array<double, 3> dots;
     for (size_t k = 0; k < 3; ++k) {
-        Point const p = PointOf(positions, vertices[static_cast<int>(k)]);
-        Point const a = Between(p, PointOf(positions, vertices[static_cast<int>((k + 1) % 3)]));
-        Point const b = Between(p, PointOf(positions, vertices[static_cast<int>((k + 2) % 3)]));
-        dots[k] = Dot(a, b);
-        triangle.squares[(k + 2) % 3] = Dot(a, a);
-        triangle.area = 0.5 * std::sqrt(std::max(0.0, Dot(a, a) * Dot(b, b) - dots[k] * dots[k]));
+        auto const corner = points[triangle.vertices[k]];
+        Eigen::Vector3d const a = points[triangle.vertices[(k + 1) % 3]] - corner,
+                              b = points[triangle.vertices[(k + 2) % 3]] - corner;
+        dots[k] = a.dot(b);
+        double const square = a.squaredNorm();
+        triangle.squares[(k + 2) % 3] = square;
+        triangle.area =
+            0.5 * std::sqrt(std::max(0.0, square * b.squaredNorm() - dots[k] * dots[k]));
     }
     double const longest =
         std::max({triangle.squares[0], triangle.squares[1], triangle.squares[2]});
@@ -95,7 +75,7 @@ Triangle MeasureTriangle(Level const& level, std::span<double const> positions, 
 std::array<double, 3> SplitArea(Triangle const& triangle) {
     std::array<double, 3> shares;
     auto const& cot = triangle.cotangents;
-    auto const widest = static_cast<size_t>(std::min_element(cot.begin(), cot.end()) - cot.begin());
+    size_t const widest = std::min_element(cot.begin(), cot.end()) - cot.begin();
     for (size_t k = 0; k < 3; ++k) {
         size_t const p = (k + 1) % 3, q = (k + 2) % 3;
         shares[k] = cot[widest] < 0.0
@@ -106,12 +86,12 @@ std::array<double, 3> SplitArea(Triangle const& triangle) {
 }
 
 /// Cotangent weights per edge, and mixed Voronoi areas per vertex where asked for.
-std::vector<double> MeasureCotangents(Level const& level, std::span<double const> positions,
+std::vector<double> MeasureCotangents(Level const& level, Points points,
                                       std::vector<double>* areas) {
-    if (areas) areas->assign(static_cast<size_t>(level.GetNumVertices()), 0.0);
-    std::vector<double> weights(static_cast<size_t>(level.GetNumEdges()), 0.0);
+    if (areas) areas->assign(level.GetNumVertices(), 0.0);
+    std::vector<double> weights(level.GetNumEdges(), 0.0);
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        Triangle const triangle = MeasureTriangle(level, positions, face);
+        Triangle const triangle = MeasureTriangle(level, points, face);
         auto const shares = SplitArea(triangle);
         auto const edges = level.GetFaceEdges(face);
         for (int k = 0; k < 3; ++k) {
@@ -123,12 +103,12 @@ std::vector<double> MeasureCotangents(Level const& level, std::span<double const
     return weights;
 }
 
-/// Positions as nanoflann reads them.
+/// Points as nanoflann reads them.
 struct PointCloud {
-    std::span<double const> positions;
-    size_t kdtree_get_point_count() const { return positions.size() / 3; }
-    double kdtree_get_pt(size_t index, size_t dimension) const {
-        return positions[3 * index + dimension];
+    Points points;
+    size_t kdtree_get_point_count() const { return points.size(); }
+    double kdtree_get_pt(size_t index, size_t axis) const {
+        return points[index][static_cast<Eigen::Index>(axis)];
     }
     template <class Box>
     bool kdtree_get_bbox(Box&) const {
@@ -137,46 +117,6 @@ struct PointCloud {
 };
 
 }  // namespace
-
-double FindMeanEdgeLength(Level const& level, std::span<double const> positions) {
-    double sum = 0.0;
-    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
-        auto const ends = level.GetEdgeVertices(edge);
-        Point const side = Between(PointOf(positions, ends[0]), PointOf(positions, ends[1]));
-        sum += std::sqrt(Dot(side, side));
-    }
-    return sum / std::max(1, level.GetNumEdges());
-}
-
-void CheckBoundary(Level const& level) {
-    for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
-        if (!level.IsVertexBoundary(vertex)) continue;
-        int count = 0;
-        for (Index edge : level.GetVertexEdges(vertex)) count += level.IsEdgeBoundary(edge);
-        if (count == 0 || count == 2) continue;
-        throw Error(ErrorCode::BadMesh,
-                    fmt::format("vertex {} has {} boundary edges; at most one boundary can pass a "
-                                "vertex, so split it",
-                                vertex, count));
-    }
-}
-
-std::vector<std::vector<Index>> FindBoundaryLoops(Level const& level) {
-    std::vector<char> isDone(static_cast<size_t>(level.GetNumVertices()), 0);
-    std::vector<std::vector<Index>> loops;
-    for (Index start = 0; start < level.GetNumVertices(); ++start) {
-        if (isDone[start] || GetBoundaryNeighbours(level, start)[0] < 0) continue;
-        std::vector<Index> loop;
-        for (Index at = start; !isDone[at];) {
-            isDone[at] = 1;
-            loop.push_back(at);
-            auto const [a, b] = GetBoundaryNeighbours(level, at);
-            at = isDone[a] ? b : a;
-        }
-        loops.push_back(std::move(loop));
-    }
-    return loops;
-}
 
 SparseRows BuildCombinatorialLaplacian(Level const& level) {
     CheckBoundary(level);
@@ -220,10 +160,11 @@ std::vector<double> FindCotangentWeights(Level const& level, std::span<double co
 AreaLaplacian BuildHeatLaplacian(Level const& level, std::span<double const> positions,
                                  HeatKernel* kernel) {
     CheckBoundary(level);
+    Points const points(positions);
     constexpr double kLeftOut = 1e-6;  // of the kernel's middle
-    std::vector<double> areas(static_cast<size_t>(level.GetNumVertices()), 0.0);
+    std::vector<double> areas(level.GetNumVertices(), 0.0);
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        Triangle const triangle = MeasureTriangle(level, positions, face);
+        Triangle const triangle = MeasureTriangle(level, points, face);
         for (Index vertex : triangle.vertices) areas[vertex] += triangle.area / 3.0;
     }
     double const edge = FindMeanEdgeLength(level, positions), time = edge * edge;
@@ -233,7 +174,7 @@ AreaLaplacian BuildHeatLaplacian(Level const& level, std::span<double const> pos
     using Tree =
         nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointCloud>,
                                             PointCloud, 3, uint32_t>;
-    PointCloud const cloud{positions};
+    PointCloud const cloud{points};
     Tree const tree(3, cloud);
     std::vector<std::pair<uint32_t, double>> near;
     AreaLaplacian laplacian;
@@ -243,7 +184,7 @@ AreaLaplacian BuildHeatLaplacian(Level const& level, std::span<double const> pos
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
         if (AddBoundaryRow(level, vertex, laplacian.rows)) continue;
         if (level.GetVertexEdges(vertex).size() > 0) {
-            tree.radiusSearch(&positions[3 * static_cast<size_t>(vertex)], squaredRadius, near,
+            tree.radiusSearch(points[vertex].data(), squaredRadius, near,
                               nanoflann::SearchParams(32, 0.0f, false));
             std::sort(near.begin(),
                       near.end());  // by index: the order of sums does not depend on the tree

@@ -18,27 +18,8 @@ namespace limn::far_ext {
 // Shape     n rows over n vertices of the level; a row adds up to 0.
 // Boundary  delta_i = v_i - (a + b) / 2 for the two neighbours a, b along the boundary: the rule of
 //           curves. Rows of vertices without an edge are empty.
-// Errors    BadMesh, for all of them: CheckBoundary's.
+// Errors    BadMesh, for all of them: that of CheckBoundary (topology/boundary.h).
 // Source    [Zhu11] Sec. 3.1 and 3.5 (boundary).
-
-/// The other end of an edge.
-inline Index GetOtherEnd(Far::TopologyLevel const& level, Index edge, Index vertex) {
-    auto const ends = level.GetEdgeVertices(edge);
-    return ends[0] == vertex ? ends[1] : ends[0];
-}
-
-/// Mean length of the edges; 0 without any.
-double FindMeanEdgeLength(Far::TopologyLevel const& level, std::span<double const> positions);
-
-/// \throws Error  BadMesh: a vertex with other than 0 or 2 boundary edges, so that boundary curves
-///                meet there
-void CheckBoundary(Far::TopologyLevel const& level);
-
-/// The boundary curves, each a cycle of vertices that starts at its lowest index; sorted by that
-/// index.
-///
-/// \pre CheckBoundary has passed
-std::vector<std::vector<Index>> FindBoundaryLoops(Far::TopologyLevel const& level);
 
 /// Combinatorial: w_ij = 1/d over the d edges of vertex i, for faces of any size. No unit.
 SparseRows BuildCombinatorialLaplacian(Far::TopologyLevel const& level);

@@ -11,7 +11,7 @@ SparseRows BuildSubdivisionRows(Far::TopologyRefiner const& refiner, int level,
                                 SubdivisionRule rule) {
     if (rule == SubdivisionRule::Butterfly) return BuildButterfly(refiner, level);
     auto const coarse = WeightRow::Identity(refiner.GetLevel(level - 1).GetNumVertices());
-    std::vector<WeightRow> fine(static_cast<size_t>(refiner.GetLevel(level).GetNumVertices()));
+    std::vector<WeightRow> fine(refiner.GetLevel(level).GetNumVertices());
     Far::PrimvarRefinerReal<double>(refiner).Interpolate(level, coarse, fine);
     SparseRows rows;
     for (WeightRow const& row : fine) rows.AddRow(row);

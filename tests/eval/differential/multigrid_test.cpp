@@ -8,7 +8,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
-#include "far_ext/differential/laplacian.h"
+#include "far_ext/topology/boundary.h"
 #include "support/refined.h"
 
 namespace limn {

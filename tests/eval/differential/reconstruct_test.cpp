@@ -7,6 +7,7 @@
 
 #include "eval/differential/subdivide_values.h"
 #include "far_ext/differential/laplacian.h"
+#include "far_ext/topology/boundary.h"
 #include "support/refined.h"
 
 namespace limn {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "far_ext/topology/boundary.h"
 #include "support/refined.h"
 
 namespace limn {
@@ -67,26 +68,6 @@ TEST(CombinatorialLaplacian, PointsOutwards) {
     auto const delta =
         test::Apply(far_ext::BuildCombinatorialLaplacian(refiner->GetLevel(0)), scene.positions);
     for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(delta[3 * 6 + c], 2.0 / 3.0, 1e-15);
-}
-
-TEST(Boundary, EachLoopIsFoundOnce) {
-    auto const refiner =
-        test::MakeRefiner(test::LoadDifferential("gridholetri", Sdc::SCHEME_LOOP), 2);
-    auto const loops = far_ext::FindBoundaryLoops(refiner->GetLevel(2));
-    ASSERT_EQ(loops.size(), 2u);
-    for (auto const& loop : loops)
-        EXPECT_EQ(loop.front(), *std::min_element(loop.begin(), loop.end()));
-}
-
-// Two triangles that touch in a vertex.
-TEST(Boundary, CurvesThatMeetAreRefused) {
-    auto const scene = test::MakeScene({0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1, 0},
-                                       {{0, 1, 2}, {0, 3, 4}}, Sdc::SCHEME_LOOP);
-    auto const refiner = test::MakeRefiner(scene, 0);
-    EXPECT_NE(test::RefusalOf([&] {
-                  far_ext::BuildCombinatorialLaplacian(refiner->GetLevel(0));
-              }).find("vertex 0 has 4 boundary edges"),
-              std::string::npos);
 }
 
 // On a sphere of radius 1, delta = 2 H n = 2 n.
