@@ -17,6 +17,7 @@
 #include "far_ext/forms/face_vectors.h"
 #include "far_ext/forms/form_operators.h"
 #include "far_ext/forms/form_stencils.h"
+#include "far_ext/rows/points.h"
 
 namespace limn::engine {
 
@@ -185,14 +186,14 @@ std::array<double, 3> ToArray(Eigen::Vector3d const& v) {
 void FindVertexVectors(Field& field) {
     int const last = field.refined->GetMaxLevel();
     Index const count = field.refined->GetLevel(last).GetNumVertices();
-    field.vectors.resize(static_cast<size_t>(count));
+    field.vectors.resize(count);
     field.mesh.normals.resize(field.mesh.positions.size());
+    far_ext::MutablePoints const normals(field.mesh.normals);
     eval::VertexCovectors const covectors(*field.refined, last);
     tbb::parallel_for(Index(0), count, [&](Index vertex) {
         auto const covector = covectors.Find(vertex, field.form, field.mesh.positions);
         field.vectors[vertex] = ToArray(covector.GetVector());
-        Eigen::Map<Eigen::Vector3d>(&field.mesh.normals[3 * static_cast<size_t>(vertex)]) =
-            covector.GetNormal();
+        normals[vertex] = covector.GetNormal();
     });
 }
 

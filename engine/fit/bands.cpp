@@ -7,18 +7,17 @@
 
 #include "engine/scene/job.h"
 #include "far_ext/error.h"
+#include "far_ext/rows/points.h"
 
 namespace limn::engine {
 
 MeshExtent MeasureExtent(Scene const& scene, Far::TopologyLevel const& level) {
     MeshExtent extent;
-    auto const point = [&](size_t vertex) {
-        return Eigen::Vector3d::Map(&scene.positions[3 * vertex]);
-    };
-    Eigen::Vector3d low = point(0), high = low;
-    for (size_t vertex = 1; vertex < scene.positions.size() / 3; ++vertex) {
-        low = low.cwiseMin(point(vertex));
-        high = high.cwiseMax(point(vertex));
+    far_ext::Points const points(scene.positions);
+    Eigen::Vector3d low = points[0], high = low;
+    for (size_t vertex = 1; vertex < points.size(); ++vertex) {
+        low = low.cwiseMin(points[vertex]);
+        high = high.cwiseMax(points[vertex]);
     }
     for (size_t c = 0; c < 3; ++c) {
         extent.low[c] = low[static_cast<Eigen::Index>(c)];
@@ -32,11 +31,10 @@ MeshExtent MeasureExtent(Scene const& scene, Far::TopologyLevel const& level) {
     size_t corner = 0;
     for (int size : scene.cage.faceSizes) {
         auto const at = [&](size_t i) -> Eigen::Vector3d {
-            return point(static_cast<size_t>(scene.cage.faceVertices[corner + i])) - low;
+            return points[scene.cage.faceVertices[corner + i]] - low;
         };
-        for (size_t i = 1; i + 1 < static_cast<size_t>(size); ++i)
-            sixfold += at(0).dot(at(i).cross(at(i + 1)));
-        corner += static_cast<size_t>(size);
+        for (int i = 1; i + 1 < size; ++i) sixfold += at(0).dot(at(i).cross(at(i + 1)));
+        corner += size;
     }
     extent.volume = sixfold / 6.0;
     return extent;
@@ -76,7 +74,7 @@ void RequireSameFaces(Scene const& from, Scene const& to) {
         refuse(fmt::format("{} and {} faces", a.GetNumFaces(), b.GetNumFaces()));
     size_t corner = 0;
     for (Index face = 0; face < a.GetNumFaces(); ++face) {
-        size_t const size = static_cast<size_t>(a.faceSizes[face]);
+        size_t const size = a.faceSizes[face];
         bool isSame = a.faceSizes[face] == b.faceSizes[face];
         for (size_t i = corner; isSame && i < corner + size; ++i)
             isSame = a.faceVertices[i] == b.faceVertices[i];

@@ -9,6 +9,7 @@
 
 #include "engine/scene/refine.h"
 #include "eval/surface/vertex_limits.h"
+#include "far_ext/rows/points.h"
 #include "far_ext/topology/refiner.h"
 
 namespace limn::engine {
@@ -24,13 +25,12 @@ void AddAlphaStep(eval::LimitOperator const& A, double alpha, std::span<double c
         auto const& c = A.GetClass(vertex);
         if (c.kind != LimitRow::Kind::Smooth) continue;
         double const n = c.numEdges;
-        auto const edges = A.GetNeighbours(vertex).first(static_cast<size_t>(c.numEdges));
+        auto const edges = A.GetNeighbours(vertex).first(c.numEdges);
         for (size_t k = 0; k < length; ++k) {
             double sum = 0.0;
-            for (Index neighbour : edges)
-                sum += control[static_cast<size_t>(neighbour) * length + k];
-            double& child = children[static_cast<size_t>(vertex) * length + k];
-            child += alpha / n * (control[static_cast<size_t>(vertex) * length + k] - sum / n);
+            for (Index neighbour : edges) sum += control[neighbour * length + k];
+            double& child = children[vertex * length + k];
+            child += alpha / n * (control[vertex * length + k] - sum / n);
         }
     }
 }
@@ -44,7 +44,7 @@ Scene RefineWithAlpha(Scene const& control, eval::LimitOperator const& A, double
         std::vector<double> const values(from.values.begin(), from.values.end());
         std::vector<double> children(fine.primvars[i].values.begin(),
                                      fine.primvars[i].values.end());
-        AddAlphaStep(A, alpha, values, static_cast<size_t>(from.numChannels), children.data());
+        AddAlphaStep(A, alpha, values, from.numChannels, children.data());
         std::transform(children.begin(), children.end(), fine.primvars[i].values.begin(),
                        [](double x) { return static_cast<float>(x); });
     }
@@ -56,12 +56,10 @@ Scene RefineWithAlpha(Scene const& control, eval::LimitOperator const& A, double
 int ChooseDepth(Scene const& scene, double size, double tolerance) {
     double longest = 0.0;
     size_t corner = 0;
-    auto const point = [&](size_t k) {
-        return Eigen::Vector3d::Map(
-            &scene.positions[3 * static_cast<size_t>(scene.cage.faceVertices[k])]);
-    };
+    far_ext::Points const points(scene.positions);
+    auto const point = [&](size_t k) { return points[scene.cage.faceVertices[k]]; };
     for (int faceSize : scene.cage.faceSizes) {
-        size_t const n = static_cast<size_t>(faceSize);
+        size_t const n = faceSize;
         for (size_t i = 0; i < n; ++i)
             longest = std::max(longest, (point(corner + i) - point(corner + (i + 1) % n)).norm());
         corner += n;
@@ -80,12 +78,10 @@ Certificate Certify(Scene const& mesh, std::span<double const> data, double tole
         surface, mesh.positions, 3, ChooseDepth(mesh, size, tolerance), CheckInterrupted);
     Certificate certificate;
     double sum = 0.0;
-    size_t const count = data.size() / 3;
+    far_ext::Points const reached(limits.values), wanted(data);
+    size_t const count = wanted.size();
     for (size_t i = 0; i < count; ++i) {
-        double const miss =
-            (Eigen::Vector3d::Map(&limits.values[3 * i]) - Eigen::Vector3d::Map(&data[3 * i]))
-                .norm() /
-            size;
+        double const miss = (reached[i] - wanted[i]).norm() / size;
         sum += miss * miss;
         if (miss <= certificate.max && certificate.worstVertex >= 0) continue;
         certificate.max = miss;

@@ -12,6 +12,7 @@
 
 #include "engine/io/file.h"
 #include "far_ext/error.h"
+#include "far_ext/rows/points.h"
 
 namespace limn::engine {
 
@@ -120,13 +121,12 @@ public:
 
     std::string Make() {
         AppendHeader();
+        far_ext::Points const points(_scene.positions);
         for (Index vertex = 0; vertex < _scene.cage.numVertices; ++vertex) {
-            for (size_t c = 0; c < 3; ++c)
-                AppendReal(_scene.positions[3 * static_cast<size_t>(vertex) + c]);
+            for (double coordinate : points[vertex]) AppendReal(coordinate);
             for (Primvar const& primvar : _scene.primvars) {
-                size_t const n = static_cast<size_t>(primvar.numChannels);
-                for (size_t c = 0; c < n; ++c)
-                    AppendRaw(primvar.values[static_cast<size_t>(vertex) * n + c]);
+                size_t const n = primvar.numChannels;
+                for (size_t c = 0; c < n; ++c) AppendRaw(primvar.values[vertex * n + c]);
             }
         }
         size_t corner = 0;
@@ -142,7 +142,7 @@ public:
                     AppendReal(_scene.uvs[2 * static_cast<size_t>(value) + 1]);
                 }
             }
-            corner += static_cast<size_t>(size);
+            corner += size;
         }
         return std::move(_bytes);
     }

@@ -12,6 +12,7 @@
 #include "engine/scene/job.h"
 #include "eval/surface/graded_points.h"
 #include "eval/surface/surface_sample.h"
+#include "far_ext/rows/points.h"
 #include "far_ext/topology/face_components.h"
 
 namespace limn::engine {
@@ -129,15 +130,13 @@ std::vector<Sums> Surveyor::SurveyMesh() const {
         Sums& sums = ofComponents[_components.ofFace[_level.GetVertexFaces(vertex)[0]]];
         sums.AddCurvature(curvature.areas[vertex], curvature.k1[vertex], curvature.k2[vertex]);
     }
-    auto const normals = eval::FindFaceNormals(_level, _scene.positions);
+    auto const faceNormals = eval::FindFaceNormals(_level, _scene.positions);
+    far_ext::Points const points(_scene.positions), normals(faceNormals);
     for (Index face = 0; face < _level.GetNumFaces(); ++face) {
-        double const* const n = &normals[3 * static_cast<size_t>(face)];
         auto const vertices = _level.GetFaceVertices(face);
         double heights = 0.0;
-        for (Index vertex : vertices) {
-            double const* const p = &_scene.positions[3 * static_cast<size_t>(vertex)];
-            heights += (p[0] * n[0] + p[1] * n[1] + p[2] * n[2]) / vertices.size();
-        }
+        for (Index vertex : vertices)
+            heights += points[vertex].dot(normals[face]) / vertices.size();
         ofComponents[_components.ofFace[face]].volume += _orientation * heights / 3.0;
     }
     return ofComponents;

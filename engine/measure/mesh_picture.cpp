@@ -13,6 +13,7 @@
 #include "engine/images/png.h"
 #include "eval/differential/dirmag.h"
 #include "far_ext/error.h"
+#include "far_ext/rows/points.h"
 #include "far_ext/topology/refiner.h"
 
 namespace limn::engine {
@@ -44,11 +45,9 @@ public:
     void Draw(Shade const& shade) {
         size_t corner = 0;
         for (int size : _scene.cage.faceSizes) {
-            auto const at = [&](int i) {
-                return _scene.cage.faceVertices[corner + static_cast<size_t>(i)];
-            };
+            auto const at = [&](int i) { return _scene.cage.faceVertices[corner + i]; };
             for (int i = 1; i + 1 < size; ++i) DrawTriangle({at(0), at(i), at(i + 1)}, shade);
-            corner += static_cast<size_t>(size);
+            corner += size;
         }
     }
 
@@ -72,8 +71,7 @@ public:
         std::vector<char> isTaken(NumPixels(), 0);
         int const reach = static_cast<int>(spacing);
         for (Index vertex = 0; vertex < _scene.cage.numVertices; ++vertex) {
-            Vector const direction(vectors[static_cast<size_t>(vertex)].data()),
-                place = Project(vertex);
+            Vector const direction(vectors[vertex].data()), place = Project(vertex);
             int const x = static_cast<int>(place.x()), y = static_cast<int>(place.y());
             if (!(direction.norm() > 1e-6 * longest) || !IsSeen(place, 2.0 / _scale) ||
                 isTaken[At(x, y)])
@@ -107,9 +105,7 @@ public:
 
 private:
     size_t NumPixels() const { return static_cast<size_t>(_size) * static_cast<size_t>(_size); }
-    Vector PointOf(Index vertex) const {
-        return Vector(&_scene.positions[3 * static_cast<size_t>(vertex)]);
-    }
+    Vector PointOf(Index vertex) const { return far_ext::Points(_scene.positions)[vertex]; }
 
     void FitToPicture() {
         Eigen::AlignedBox2d box;
@@ -181,8 +177,7 @@ private:
                 Vector const weights(1.0 - wb - wc, wb, wc);
                 if (weights.minCoeff() < -1e-9) continue;
                 double const depth = weights.dot(Vector(a.z(), b.z(), c.z()));
-                size_t const pixel =
-                    static_cast<size_t>(y) * static_cast<size_t>(_size) + static_cast<size_t>(x);
+                size_t const pixel = At(x, y);
                 if (!(depth > _depth[pixel])) continue;
                 _depth[pixel] = depth;
                 _coverage[pixel] = 1.0f;
@@ -200,12 +195,10 @@ private:
     double _scale = 1.0;
 };
 
-Vector BlendNormal(std::vector<double> const& normals, Vector const& weights,
+Vector BlendNormal(far_ext::Points normals, Vector const& weights,
                    std::array<Index, 3> const& corners) {
     Vector normal = Vector::Zero();
-    for (int k = 0; k < 3; ++k)
-        normal +=
-            weights[k] * Vector(&normals[3 * static_cast<size_t>(corners[static_cast<size_t>(k)])]);
+    for (int k = 0; k < 3; ++k) normal += weights[k] * normals[corners[k]];
     return normal.normalized();
 }
 
@@ -222,8 +215,7 @@ void WriteValuePicture(std::string const& path, Scene const& scene, std::string 
     picture.Draw([&](Vector const& weights, std::array<Index, 3> const& corners) {
         double value = 0.0;
         for (int k = 0; k < 3; ++k)
-            value +=
-                weights[k] * static_cast<double>(found->values[corners[static_cast<size_t>(k)]]);
+            value += weights[k] * static_cast<double>(found->values[corners[k]]);
         return value;
     });
     picture.Write(path, true);
@@ -235,12 +227,11 @@ void WriteShadedPicture(std::string const& path, Scene const& scene, PictureView
     Vector const eye = picture.GetDirectionToEye(),
                  light =
                      (eye + 0.5 * picture.GetUp() + 0.4 * picture.GetUp().cross(eye)).normalized();
-    auto const at = [&](Index vertex) {
-        return Vector(&scene.positions[3 * static_cast<size_t>(vertex)]);
-    };
+    far_ext::Points const points(scene.positions);
     picture.Draw([&](Vector const&, std::array<Index, 3> const& corners) {
+        auto const origin = points[corners[0]];
         Vector normal =
-            (at(corners[1]) - at(corners[0])).cross(at(corners[2]) - at(corners[0])).normalized();
+            (points[corners[1]] - origin).cross(points[corners[2]] - origin).normalized();
         if (normal.dot(eye) < 0.0) normal = -normal;
         return 0.25 + 0.7 * std::max(0.0, normal.dot(light));
     });

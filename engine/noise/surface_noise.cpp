@@ -14,6 +14,7 @@
 #include "eval/fit/interpolate.h"
 #include "eval/surface/surface_sample.h"
 #include "far_ext/error.h"
+#include "far_ext/rows/points.h"
 #include "far_ext/topology/refined_cage.h"
 #include "far_ext/topology/refiner.h"
 
@@ -23,16 +24,11 @@ namespace {
 
 /// Half a noise cell per mean edge of the cage: what its vertices can show.
 double FindFrequency(Far::TopologyLevel const& level, std::span<double const> positions) {
+    far_ext::Points const points(positions);
     double length = 0.0;
     for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
         auto const ends = level.GetEdgeVertices(edge);
-        double square = 0.0;
-        for (size_t c = 0; c < 3; ++c) {
-            double const d = positions[3 * static_cast<size_t>(ends[0]) + c] -
-                             positions[3 * static_cast<size_t>(ends[1]) + c];
-            square += d * d;
-        }
-        length += std::sqrt(square);
+        length += (points[ends[0]] - points[ends[1]]).norm();
     }
     return length > 0.0 ? 0.5 * level.GetNumEdges() / length : 1.0;
 }

@@ -14,20 +14,18 @@
 #include "engine/io/edge_values.h"
 #include "engine/io/number_table.h"
 #include "far_ext/error.h"
+#include "far_ext/rows/points.h"
 
 namespace limn::engine {
 
 namespace {
 
 using Vector = Eigen::Vector3d;
+using far_ext::Points;
 
-Vector At(std::vector<double> const& positions, Index vertex) {
-    return Vector(&positions[3 * static_cast<size_t>(vertex)]);
-}
-
-double Length(Scene const& scene, Far::TopologyLevel const& level, Index edge) {
+double Length(Points points, Far::TopologyLevel const& level, Index edge) {
     auto const ends = level.GetEdgeVertices(edge);
-    return (At(scene.positions, ends[0]) - At(scene.positions, ends[1])).norm();
+    return (points[ends[0]] - points[ends[1]]).norm();
 }
 
 void CheckWidth(double width, std::string const& path, size_t line) {
@@ -75,17 +73,18 @@ FilterWidths FilterWidths::AtVertices(std::vector<double> values) {
 
 FilterWidths FilterWidths::LocalEdgeLengths(Scene const& scene, Far::TopologyLevel const& level,
                                             double scale) {
-    std::vector<double> means(static_cast<size_t>(level.GetNumVertices()), 0.0);
+    std::vector<double> means(level.GetNumVertices(), 0.0);
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
         auto const edges = level.GetVertexEdges(vertex);
-        for (Index edge : edges) means[vertex] += scale * Length(scene, level, edge) / edges.size();
+        for (Index edge : edges)
+            means[vertex] += scale * Length(scene.positions, level, edge) / edges.size();
     }
     return AtVertices(std::move(means));
 }
 
 FilterWidths FilterWidths::ReadMap(std::string const& path, Scene const& scene) {
     auto const table = ReadNumberTable(path, {{"vertex", "width"}});
-    std::vector<double> widths(static_cast<size_t>(scene.cage.numVertices), 0.0);
+    std::vector<double> widths(scene.cage.numVertices, 0.0);
     std::vector<size_t> lines(widths.size(), 0);
     for (size_t row = 0; row < table.GetNumRows(); ++row) {
         Index const vertex = GetIndex(table, path, row, 0, scene.cage.numVertices, "vertex");
@@ -116,15 +115,14 @@ FilterWidths FilterWidths::ReadEdges(std::string const& path, Scene const& scene
 /// Finds the faces near each edge, walking over shared vertices: a near face of another sheet is
 /// none.
 void FilterWidths::ReachFaces(Scene const& scene, Far::TopologyLevel const& level) {
-    std::vector<Eigen::AlignedBox3d> boxes(static_cast<size_t>(level.GetNumFaces()));
+    Points const points(scene.positions);
+    std::vector<Eigen::AlignedBox3d> boxes(level.GetNumFaces());
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        for (Index vertex : level.GetFaceVertices(face))
-            boxes[face].extend(At(scene.positions, vertex));
+        for (Index vertex : level.GetFaceVertices(face)) boxes[face].extend(points[vertex]);
     }
     _edgesNearFace.resize(boxes.size());
     for (size_t i = 0; i < _edges.size(); ++i) {
-        Vector const p = At(scene.positions, _edges[i].ends[0]),
-                     q = At(scene.positions, _edges[i].ends[1]);
+        Vector const p = points[_edges[i].ends[0]], q = points[_edges[i].ends[1]];
         _segments.push_back({std::array{p.x(), p.y(), p.z()}, std::array{q.x(), q.y(), q.z()}});
         Eigen::AlignedBox3d around(p.cwiseMin(q), p.cwiseMax(q));
         double const reach = kReach * _edges[i].width;
@@ -151,17 +149,17 @@ void FilterWidths::ReachFaces(Scene const& scene, Far::TopologyLevel const& leve
 std::vector<double> FilterWidths::SampleEdges(SmoothLevels const& levels,
                                               std::vector<double> const& positions) const {
     auto const& mesh = levels.GetMesh();
-    std::vector<double> widths(static_cast<size_t>(mesh.numVertices), 0.0);
+    std::vector<double> widths(mesh.numVertices, 0.0);
     auto const baseFaces = levels.FindBaseFaces();
+    Points const points(positions);
     for (size_t face = 0; face < baseFaces.size(); ++face) {
         for (int i : _edgesNearFace[baseFaces[face]]) {
             for (int k = 0; k < mesh.faceSize; ++k) {
-                Index const vertex =
-                    mesh.faces[face * static_cast<size_t>(mesh.faceSize) + static_cast<size_t>(k)];
+                Index const vertex = mesh.faces[face * mesh.faceSize + k];
                 double const width = _edges[i].width;
-                widths[vertex] = std::max(
-                    widths[vertex],
-                    width * FallOff(Distance(At(positions, vertex), _segments[i]) / width));
+                widths[vertex] =
+                    std::max(widths[vertex],
+                             width * FallOff(Distance(points[vertex], _segments[i]) / width));
             }
         }
     }
@@ -241,7 +239,7 @@ std::vector<double> FilterWidths::SampleTexture(SmoothLevels& levels) const {
     auto const& mesh = levels.GetMesh();
     auto const uvs = levels.FindCornerUVs();
     auto const baseFaces = levels.FindBaseFaces();
-    std::vector<double> widths(static_cast<size_t>(mesh.numVertices), 0.0);
+    std::vector<double> widths(mesh.numVertices, 0.0);
     std::vector<int> counts(widths.size(), 0);
     for (size_t corner = 0; corner < mesh.faces.size(); ++corner) {
         int const tile = _tileOfFace[baseFaces[corner / static_cast<size_t>(mesh.faceSize)]];

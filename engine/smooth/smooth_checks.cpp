@@ -10,26 +10,17 @@
 
 #include "engine/scene/mesh_info.h"
 #include "far_ext/error.h"
+#include "far_ext/rows/points.h"
 #include "far_ext/topology/face_components.h"
 
 namespace limn::engine {
 
-namespace {
-
-using Vector = Eigen::Vector3d;
-
-Vector At(Scene const& scene, Index vertex) {
-    return Vector(&scene.positions[3 * static_cast<size_t>(vertex)]);
-}
-
-}  // namespace
-
 SmoothComponents::SmoothComponents(Far::TopologyLevel const& level) {
     auto const faces = far_ext::FaceComponents::Find(level);
     count = faces.count;
-    ofVertex.assign(static_cast<size_t>(level.GetNumVertices()), -1);
-    isClosed.assign(static_cast<size_t>(count), 1);
-    firstVertex.assign(static_cast<size_t>(count), -1);
+    ofVertex.assign(level.GetNumVertices(), -1);
+    isClosed.assign(count, 1);
+    firstVertex.assign(count, -1);
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
         auto const around = level.GetVertexFaces(vertex);
         if (around.size() == 0) continue;
@@ -57,13 +48,14 @@ void RefuseDefects(Scene const& scene, Far::TopologyLevel const& level, Job& job
 }
 
 void RequireGraph(Scene const& scene, Far::TopologyLevel const& level) {
+    far_ext::Points const points(scene.positions);
     double direction = 0.0;
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         auto const vertices = level.GetFaceVertices(face);
         int const n = vertices.size();
         for (int k = 0; k < n; ++k) {
-            Vector const a = At(scene, vertices[k]), b = At(scene, vertices[(k + 1) % n]),
-                         c = At(scene, vertices[(k + 2) % n]);
+            Eigen::Vector3d const a = points[vertices[k]], b = points[vertices[(k + 1) % n]],
+                                  c = points[vertices[(k + 2) % n]];
             double const turn = (b - a).x() * (c - b).y() - (b - a).y() * (c - b).x();
             if (direction == 0.0) direction = turn;
             if (turn != 0.0 && (turn > 0.0) == (direction > 0.0)) continue;
@@ -79,13 +71,15 @@ void RequireGraph(Scene const& scene, Far::TopologyLevel const& level) {
 void WarnOfSharpCorners(Scene const& scene, Far::TopologyLevel const& level,
                         far_ext::CascadeLevel const& first, std::vector<double> const& widths,
                         Job& job) {
-    std::vector<double> angles(static_cast<size_t>(level.GetNumVertices()), 0.0);
+    far_ext::Points const points(scene.positions);
+    std::vector<double> angles(level.GetNumVertices(), 0.0);
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         auto const vertices = level.GetFaceVertices(face);
         int const n = vertices.size();
         for (int k = 0; k < n; ++k) {
-            Vector const a = At(scene, vertices[(k + n - 1) % n]) - At(scene, vertices[k]),
-                         b = At(scene, vertices[(k + 1) % n]) - At(scene, vertices[k]);
+            auto const corner = points[vertices[k]];
+            Eigen::Vector3d const a = points[vertices[(k + n - 1) % n]] - corner,
+                                  b = points[vertices[(k + 1) % n]] - corner;
             angles[vertices[k]] += std::atan2(a.cross(b).norm(), a.dot(b));
         }
     }

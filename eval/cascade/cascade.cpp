@@ -12,6 +12,7 @@
 #include "eval/cascade/cascade_solve.h"
 #include "eval/parallel/rows.h"
 #include "far_ext/error.h"
+#include "far_ext/rows/points.h"
 
 namespace limn::eval {
 
@@ -230,12 +231,12 @@ void Cascade<Scalar>::SweepInParts(CascadeRows<Scalar> const& from, CascadeRows<
 template <class Scalar>
 std::vector<double> Cascade<Scalar>::GetPublic(CascadeRows<Scalar> const& rows) const {
     std::vector<double> values(3 * rows.size());
+    far_ext::MutablePoints const points(values);
     for (size_t row = 0; row < rows.size(); ++row) {
-        size_t const vertex = _level ? static_cast<size_t>(_level->vertices[row]) : row;
+        auto point = points[GetVertex(row)];
         for (Eigen::Index c = 0; c < 3; ++c) {
             bool const isInPlane = _options.isGraph && c < 2;
-            values[3 * vertex + static_cast<size_t>(c)] =
-                static_cast<double>(isInPlane ? _plane[row][c] : rows[row][c]);
+            point[c] = static_cast<double>(isInPlane ? _plane[row][c] : rows[row][c]);
         }
     }
     return values;
@@ -254,10 +255,8 @@ std::vector<double> Cascade<Scalar>::GetStartPositions() const {
 template <class Scalar>
 std::vector<double> Cascade<Scalar>::GetWidths() const {
     std::vector<double> widths(_x.size(), _options.width);
-    for (size_t row = 0; _options.width < 0.0 && row < _x.size(); ++row) {
-        widths[_level ? static_cast<size_t>(_level->vertices[row]) : row] =
-            static_cast<double>(_x[row][3]);
-    }
+    for (size_t row = 0; _options.width < 0.0 && row < _x.size(); ++row)
+        widths[GetVertex(row)] = static_cast<double>(_x[row][3]);
     return widths;
 }
 
@@ -265,9 +264,9 @@ template <class Scalar>
 CascadeRows<Scalar> Cascade<Scalar>::MakeRows(std::span<double const> values) const {
     CascadeRows<Scalar> rows;
     rows.reserve(_x.size());
+    far_ext::Points const points(values);
     for (size_t row = 0; row < _x.size(); ++row) {
-        Index const vertex = _level ? _level->vertices[row] : static_cast<Index>(row);
-        double const* const value = &values[3 * static_cast<size_t>(vertex)];
+        auto const value = points[GetVertex(row)];
         rows.emplace_back(static_cast<Scalar>(value[0]), static_cast<Scalar>(value[1]),
                           static_cast<Scalar>(value[2]), Scalar(0));
     }

@@ -90,6 +90,8 @@ private:
     void Sweep(int iterations);
     void SweepInParts(CascadeRows<Scalar> const& from, CascadeRows<Scalar> const& x0,
                       CascadeRows<Scalar>& next, CascadeRows<Scalar>& x, int iterations) const;
+    /// The vertex of a row; before the first level rows are in the public order.
+    size_t GetVertex(size_t row) const { return _level ? _level->vertices[row] : row; }
     std::vector<double> GetPublic(CascadeRows<Scalar> const& rows) const;
     CascadeRows<Scalar> MakeRows(std::span<double const> values) const;
     bool IsDegenerate(MetricQuality const& quality) const;

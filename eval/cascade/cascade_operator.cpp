@@ -45,8 +45,8 @@ template <class Scalar>
 MetricQuality Build(CascadeLevel const& level, CascadeRows<Scalar> const& metric, Scalar width,
                     CascadeOperator<Scalar>& op) {
     op.edges.resize(level.neighbours.size());
-    op.masses.resize(static_cast<size_t>(level.numUnknowns));
-    op.diagonals.resize(static_cast<size_t>(level.numUnknowns));
+    op.masses.resize(level.numUnknowns);
+    op.diagonals.resize(level.numUnknowns);
     CascadeBuildJob<Scalar> const job{
         GetRings(level), metric.data()->data(), width < Scalar(0),  Scalar(0.5) * width * width,
         op.edges.data(), op.masses.data(),      op.diagonals.data()};

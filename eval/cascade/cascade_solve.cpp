@@ -59,7 +59,7 @@ public:
                           CascadeRows<double> const& x0, CascadeRows<double>& x, Index begin,
                           Index end)
         : _level(level), _op(op), _x0(x0), _x(x), _begin(begin), _end(end) {
-        size_t const count = static_cast<size_t>(end - begin);
+        size_t const count = end - begin;
         for (auto* rows : {&_residual, &_direction, &_image}) rows->assign(count, Row::Zero());
     }
 
@@ -109,7 +109,7 @@ public:
     }
 
 private:
-    size_t At(Index row) const { return static_cast<size_t>(row - _begin); }
+    size_t At(Index row) const { return row - _begin; }
     double IsMoved(Index row) const { return _op.diagonals[row] > 0.0 ? 1.0 : 0.0; }
     double GetInverse(Index row) const {
         return !_isPreconditioned         ? IsMoved(row)

@@ -22,12 +22,12 @@ std::vector<double> Scale(std::vector<double> values, double factor) {
 
 std::vector<double> FindMeanRadii(std::span<double const> positions,
                                   std::span<int const> componentOfVertex, int numComponents) {
-    size_t const count = static_cast<size_t>(numComponents);
+    size_t const count = numComponents;
     std::vector<std::array<double, 3>> means(count, {0.0, 0.0, 0.0});
     std::vector<double> numVertices(count, 0.0), radii(count, 0.0);
     for (size_t vertex = 0; vertex < componentOfVertex.size(); ++vertex) {
         if (componentOfVertex[vertex] < 0) continue;
-        size_t const component = static_cast<size_t>(componentOfVertex[vertex]);
+        size_t const component = componentOfVertex[vertex];
         numVertices[component] += 1.0;
         for (size_t c = 0; c < 3; ++c) means[component][c] += positions[3 * vertex + c];
     }
@@ -36,7 +36,7 @@ std::vector<double> FindMeanRadii(std::span<double const> positions,
     }
     for (size_t vertex = 0; vertex < componentOfVertex.size(); ++vertex) {
         if (componentOfVertex[vertex] < 0) continue;
-        size_t const component = static_cast<size_t>(componentOfVertex[vertex]);
+        size_t const component = componentOfVertex[vertex];
         auto const& mean = means[component];
         radii[component] +=
             std::hypot(positions[3 * vertex] - mean[0], positions[3 * vertex + 1] - mean[1],

@@ -7,18 +7,22 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "far_ext/rows/points.h"
+
 namespace limn::eval {
 
 namespace {
 
 using far_ext::CascadeMesh;
 using Vector = Eigen::Vector3d;
+using far_ext::MutablePoints;
+using far_ext::Points;
 
 /// Calls visit(a, b, c, share) for all triangles of a mesh; those of a quad's two diagonals have
 /// half shares.
 template <class Visit>
 void ForEachTriangle(CascadeMesh const& mesh, Visit const& visit) {
-    size_t const n = static_cast<size_t>(mesh.faceSize);
+    size_t const n = mesh.faceSize;
     for (size_t face = 0; face < mesh.faces.size(); face += n) {
         Index const* const f = &mesh.faces[face];
         if (n == 3) {
@@ -29,15 +33,11 @@ void ForEachTriangle(CascadeMesh const& mesh, Visit const& visit) {
     }
 }
 
-Vector At(std::span<double const> positions, Index vertex) {
-    return Vector(&positions[3 * static_cast<size_t>(vertex)]);
-}
-
 /// d volume / d position, per vertex.
-std::vector<Vector> FindGradients(CascadeMesh const& mesh, std::span<double const> positions) {
-    std::vector<Vector> gradients(static_cast<size_t>(mesh.numVertices), Vector::Zero());
+std::vector<Vector> FindGradients(CascadeMesh const& mesh, Points points) {
+    std::vector<Vector> gradients(mesh.numVertices, Vector::Zero());
     ForEachTriangle(mesh, [&](Index a, Index b, Index c, double share) {
-        Vector const p = At(positions, a), q = At(positions, b), r = At(positions, c);
+        Vector const p = points[a], q = points[b], r = points[c];
         Vector const normal = share / 6.0 * (q - p).cross(r - p);
         // The part of the volume's derivative that closed rings leave of (share / 6) q x r.
         for (Index vertex : {a, b, c}) gradients[vertex] += normal;
@@ -49,14 +49,14 @@ std::vector<Vector> FindGradients(CascadeMesh const& mesh, std::span<double cons
 
 std::vector<double> MeasureVolumes(CascadeMesh const& mesh, std::span<int const> componentOfVertex,
                                    int numComponents, std::span<double const> positions) {
-    std::vector<double> volumes(static_cast<size_t>(numComponents), 0.0);
+    Points const points(positions);
+    std::vector<double> volumes(numComponents, 0.0);
     std::vector<Index> origins(volumes.size(), -1);  // near the surface: far ones would cost digits
     ForEachTriangle(mesh, [&](Index a, Index b, Index c, double share) {
-        size_t const component = static_cast<size_t>(componentOfVertex[a]);
+        size_t const component = componentOfVertex[a];
         if (origins[component] < 0) origins[component] = a;
-        Vector const origin = At(positions, origins[component]);
-        Vector const p = At(positions, a) - origin, q = At(positions, b) - origin,
-                     r = At(positions, c) - origin;
+        auto const origin = points[origins[component]];
+        Vector const p = points[a] - origin, q = points[b] - origin, r = points[c] - origin;
         volumes[component] += share / 6.0 * p.dot(q.cross(r));
     });
     return volumes;
@@ -80,6 +80,8 @@ std::vector<char> RestoreVolumes(CascadeMesh const& mesh, std::span<int const> c
     constexpr double kTolerance = 1e-12, kMetTolerance = 1e-10;
     std::vector<char> isMet(numComponents, 1);
     std::vector<double> const start(positions.begin(), positions.end());
+    Points const starts(start), along(directions);
+    MutablePoints const points(positions);
     std::vector<double> factors(numComponents, 0.0);
     for (int step = 0; step <= kNewtonSteps; ++step) {
         auto const present =
@@ -88,8 +90,7 @@ std::vector<char> RestoreVolumes(CascadeMesh const& mesh, std::span<int const> c
         std::vector<double> slopes(numComponents, 0.0);
         for (size_t vertex = 0; vertex < gradients.size(); ++vertex) {
             if (componentOfVertex[vertex] < 0) continue;
-            slopes[static_cast<size_t>(componentOfVertex[vertex])] +=
-                gradients[vertex].dot(At(directions, static_cast<Index>(vertex)));
+            slopes[componentOfVertex[vertex]] += gradients[vertex].dot(along[vertex]);
         }
         bool isDone = true;
         for (size_t component = 0; component < numComponents; ++component) {
@@ -105,16 +106,13 @@ std::vector<char> RestoreVolumes(CascadeMesh const& mesh, std::span<int const> c
         if (isDone || step == kNewtonSteps) break;
         for (size_t vertex = 0; vertex < gradients.size(); ++vertex) {
             if (componentOfVertex[vertex] < 0) continue;
-            double const factor = factors[static_cast<size_t>(componentOfVertex[vertex])];
-            for (size_t i = 3 * vertex; i < 3 * vertex + 3; ++i)
-                positions[i] = start[i] + factor * directions[i];
+            points[vertex] = starts[vertex] + factors[componentOfVertex[vertex]] * along[vertex];
         }
     }
     for (size_t vertex = 0; vertex < componentOfVertex.size();
          ++vertex) {  // what cannot be met, stays
-        if (componentOfVertex[vertex] < 0 || isMet[static_cast<size_t>(componentOfVertex[vertex])])
-            continue;
-        std::copy_n(&start[3 * vertex], 3, &positions[3 * vertex]);
+        if (componentOfVertex[vertex] < 0 || isMet[componentOfVertex[vertex]]) continue;
+        points[vertex] = starts[vertex];
     }
     return isMet;
 }

@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 
 #include "far_ext/error.h"
+#include "far_ext/rows/points.h"
 
 namespace limn::eval {
 
@@ -16,13 +17,13 @@ namespace {
 /// no more than angles of about the right size [Differential 6].
 std::vector<std::vector<double>> RestrictPositions(Far::TopologyRefiner const& refiner,
                                                    std::span<double const> positions) {
-    std::vector<std::vector<double>> levels(static_cast<size_t>(refiner.GetMaxLevel()) + 1);
+    std::vector<std::vector<double>> levels(refiner.GetMaxLevel() + 1);
     levels.back().assign(positions.begin(), positions.end());
     for (int k = refiner.GetMaxLevel() - 1; k >= 0; --k) {
         auto const level = refiner.GetLevel(k);
+        far_ext::Points const finer(levels[k + 1]);
         for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
-            double const* const p =
-                &levels[k + 1][3 * static_cast<size_t>(level.GetVertexChildVertex(vertex))];
+            auto const p = finer[level.GetVertexChildVertex(vertex)];
             levels[k].insert(levels[k].end(), {p[0], p[1], p[2]});
         }
     }
@@ -38,7 +39,7 @@ std::vector<double> FindCoarseWeights(Far::TopologyLevel const& level,
         for (double& weight : weights) weight = std::max(weight, 1e-3);
         return weights;
     } catch (Error const&) {
-        return std::vector<double>(static_cast<size_t>(level.GetNumEdges()), 1.0);
+        return std::vector<double>(level.GetNumEdges(), 1.0);
     }
 }
 
@@ -77,14 +78,18 @@ public:
         auto const laplacian = _build(positions);
         Misfit misfit{std::vector<double>(positions.size()), laplacian.areas};
         laplacian.rows.Apply(positions.data(), misfit.values.data(), 3);
+        far_ext::Points const deltas(_deltas);
+        far_ext::MutablePoints const values(misfit.values);
         for (Index row = 0; row < _finest.GetNumRows(); ++row) {
             Index const vertex = _finest.vertices[row];
             double const area = laplacian.areas[vertex];
-            for (size_t c = 0, i = 3 * static_cast<size_t>(vertex); c < 3; ++c, ++i) {
-                misfit.values[i] =
-                    row < _finest.numUnknowns ? _deltas[i] - misfit.values[i] / area : 0.0;
-                misfit.squares += area * misfit.values[i] * misfit.values[i];
-                if (row < _finest.numUnknowns) misfit.scale += area * _deltas[i] * _deltas[i];
+            bool const isUnknown = row < _finest.numUnknowns;
+            for (Index c = 0; c < 3; ++c) {
+                double const delta = deltas[vertex][c];
+                double& value = values[vertex][c];
+                value = isUnknown ? delta - value / area : 0.0;
+                misfit.squares += area * value * value;
+                if (isUnknown) misfit.scale += area * delta * delta;
             }
         }
         return misfit;

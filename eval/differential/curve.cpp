@@ -14,11 +14,10 @@ double LengthOf(DoubleLanes const& row) {
 /// A point by its place in the order; beyond an end, the reflection of what lies inside.
 DoubleLanes GetPoint(Curve const& curve, int i) {
     int const size = static_cast<int>(curve.points.size());
-    if (curve.isClosed) return curve.points[static_cast<size_t>((i + size) % size)];
-    if (i < 0) return 2.0 * curve.points.front() - curve.points[static_cast<size_t>(-i)];
-    if (i >= size)
-        return 2.0 * curve.points.back() - curve.points[static_cast<size_t>(2 * size - 2 - i)];
-    return curve.points[static_cast<size_t>(i)];
+    if (curve.isClosed) return curve.points[(i + size) % size];
+    if (i < 0) return 2.0 * curve.points.front() - curve.points[-i];
+    if (i >= size) return 2.0 * curve.points.back() - curve.points[2 * size - 2 - i];
+    return curve.points[i];
 }
 
 bool IsEnd(Curve const& curve, int i) {

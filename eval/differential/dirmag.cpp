@@ -7,23 +7,15 @@
 #include <Eigen/Geometry>
 #include <tbb/parallel_for.h>
 
-#include "far_ext/types.h"
+#include "far_ext/rows/points.h"
 
 namespace limn::eval {
 
 namespace {
 
 using Vector = Eigen::Vector3d;
-
-Vector Get(std::span<double const> values, Index i) {
-    double const* const p = values.data() + 3 * static_cast<size_t>(i);
-    return {p[0], p[1], p[2]};
-}
-
-void Set(std::vector<double>& values, Index i, Vector const& v) {
-    for (Index c = 0; c < 3; ++c)
-        values[3 * static_cast<size_t>(i) + static_cast<size_t>(c)] = v[c];
-}
+using far_ext::MutablePoints;
+using far_ext::Points;
 
 /// The tangent at unit vector q along which the great circle to unit vector n runs, as long as the
 /// arc.
@@ -41,20 +33,19 @@ Vector ExpMap(Vector const& q, Vector const& tangent) {
 }
 
 /// The weighted mean on the sphere of a row's directions.
-Vector FindSphericalMean(far_ext::SparseRows const& rows, int row,
-                         std::span<double const> directions) {
+Vector FindSphericalMean(far_ext::SparseRows const& rows, int row, Points directions) {
     Vector mean = Vector::Zero();
     int largest = rows.offsets[row];
     for (int k = rows.offsets[row]; k < rows.offsets[row + 1]; ++k) {
-        mean += rows.weights[k] * Get(directions, rows.indices[k]);
+        mean += rows.weights[k] * directions[rows.indices[k]];
         if (std::abs(rows.weights[k]) > std::abs(rows.weights[largest])) largest = k;
     }
-    if (!(mean.norm() > 1e-12)) return Get(directions, rows.indices[largest]);
+    if (!(mean.norm() > 1e-12)) return directions[rows.indices[largest]];
     Vector q = mean.normalized();
     for (int step = 0; step < 100; ++step) {
         Vector sum = Vector::Zero();
         for (int k = rows.offsets[row]; k < rows.offsets[row + 1]; ++k) {
-            sum += rows.weights[k] * LogMap(q, Get(directions, rows.indices[k]));
+            sum += rows.weights[k] * LogMap(q, directions[rows.indices[k]]);
         }
         q = ExpMap(q, sum);
         if (sum.norm() < 1e-14) break;
@@ -66,40 +57,42 @@ Vector FindSphericalMean(far_ext::SparseRows const& rows, int row,
 
 std::vector<double> FindAngleNormals(Far::TopologyLevel const& level,
                                      std::span<double const> positions) {
-    std::vector<double> normals(positions.size(), 0.0);
+    std::vector<double> sums(positions.size(), 0.0);
+    Points const points(positions);
+    MutablePoints const normals(sums);
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         auto const vertices = level.GetFaceVertices(face);
         int const size = vertices.size();
         for (int i = 0; i < size; ++i) {
-            Vector const p = Get(positions, vertices[i]);
-            Vector const a = Get(positions, vertices[(i + 1) % size]) - p,
-                         b = Get(positions, vertices[(i + size - 1) % size]) - p;
+            auto const p = points[vertices[i]];
+            Vector const a = points[vertices[(i + 1) % size]] - p,
+                         b = points[vertices[(i + size - 1) % size]] - p;
             Vector const across = a.cross(b);
             double const sine = across.norm();
-            if (sine > 0.0)
-                Set(normals, vertices[i],
-                    Get(normals, vertices[i]) + across * (std::atan2(sine, a.dot(b)) / sine));
+            if (sine > 0.0) normals[vertices[i]] += across * (std::atan2(sine, a.dot(b)) / sine);
         }
     }
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
-        Vector const sum = Get(normals, vertex);
-        Set(normals, vertex, sum.norm() > 0.0 ? Vector(sum.normalized()) : Vector(0.0, 0.0, 1.0));
+        Vector const sum = normals[vertex];
+        normals[vertex] = sum.norm() > 0.0 ? Vector(sum.normalized()) : Vector(0.0, 0.0, 1.0);
     }
-    return normals;
+    return sums;
 }
 
 DirMag SplitDirMag(Far::TopologyLevel const& level, std::span<double const> positions,
                    std::span<double const> deltas) {
     DirMag split{{}, FindAngleNormals(level, positions), 0.0};
+    Points const points(deltas);
+    MutablePoints const directions(split.directions);
     double tangential = 0.0, all = 0.0;
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
-        Vector const delta = Get(deltas, vertex), normal = Get(split.directions, vertex);
+        Vector const delta = points[vertex], normal = directions[vertex];
         double const along = delta.dot(normal), length = delta.norm();
         tangential += (delta - along * normal).squaredNorm();
         all += delta.squaredNorm();
         double const magnitude = along > 0.0 ? length : -length;
         split.magnitudes.push_back(magnitude);
-        if (length > 0.0) Set(split.directions, vertex, delta / magnitude);
+        if (length > 0.0) directions[vertex] = delta / magnitude;
     }
     split.tangentialShare = all > 0.0 ? std::sqrt(tangential / all) : 0.0;
     return split;
@@ -107,11 +100,12 @@ DirMag SplitDirMag(Far::TopologyLevel const& level, std::span<double const> posi
 
 DirMag SubdivideDirMag(far_ext::SparseRows const& rows, DirMag const& coarse) {
     DirMag fine{{}, {}, coarse.tangentialShare};
-    fine.magnitudes.resize(static_cast<size_t>(rows.GetNumRows()));
+    fine.magnitudes.resize(rows.GetNumRows());
     fine.directions.resize(3 * fine.magnitudes.size());
     rows.Apply(coarse.magnitudes.data(), fine.magnitudes.data(), 1);
+    MutablePoints const directions(fine.directions);
     tbb::parallel_for(0, rows.GetNumRows(), [&](int row) {
-        Set(fine.directions, row, FindSphericalMean(rows, row, coarse.directions));
+        directions[row] = FindSphericalMean(rows, row, coarse.directions);
     });
     return fine;
 }

@@ -9,6 +9,7 @@
 #include "eval/differential/v_cycle.h"
 #include "eval/parallel/rows.h"
 #include "far_ext/error.h"
+#include "far_ext/rows/points.h"
 
 namespace limn::eval {
 
@@ -76,14 +77,14 @@ struct Multigrid::Implementation {
         : levels(BuildMultigridLevels(refiner, fixed, coarsest)), cycle(levels) {
         cycle.SetWeights(std::vector<RowWeights<float>>(levels.size()),
                          BoundEigenvalues(refiner, coarsest), true);
-        auto const numRows = static_cast<size_t>(GetFinest().GetNumRows());
+        size_t const numRows = GetFinest().GetNumRows();
         for (auto* rows : {&x, &residual, &direction, &image})
             rows->assign(numRows, DoubleLanes::Zero());
     }
 
     MultigridLevel const& GetFinest() const { return levels.back(); }
     DoubleLanes ReadRow(std::span<double const> values, Index row) const {
-        double const* const p = &values[3 * static_cast<size_t>(GetFinest().vertices[row])];
+        auto const p = far_ext::Points(values)[GetFinest().vertices[row]];
         return {p[0], p[1], p[2], 0.0};
     }
     DoubleLanes Apply(std::vector<DoubleLanes> const& rows, Index row) const {
@@ -205,10 +206,9 @@ MultigridReport Multigrid::Solve(std::span<double const> rightSide, std::span<do
     squares = SumRows(level.numUnknowns,
                       [&](Index row) -> DoubleLanes { return self.residual[row].square(); });
     report.residual = unit > 0.0 ? std::sqrt(squares.sum()) / unit : 0.0;
-    ForEachRow(level.numUnknowns, [&](Index row) {
-        double* const p = &solution[3 * static_cast<size_t>(level.vertices[row])];
-        for (Index c = 0; c < 3; ++c) p[c] = self.x[row][c];
-    });
+    far_ext::MutablePoints const points(solution);
+    ForEachRow(level.numUnknowns,
+               [&](Index row) { points[level.vertices[row]] = self.x[row].head<3>(); });
     return report;
 }
 

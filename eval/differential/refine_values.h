@@ -32,8 +32,8 @@ std::vector<double> RefineValues(Far::TopologyRefiner const& refiner, int level,
     Far::PrimvarRefinerReal<double> const primvars(refiner);
     auto const topology = refiner.GetLevel(level);
     bool const isFVar = fvarChannel >= 0;
-    size_t const count = static_cast<size_t>(isFVar ? topology.GetNumFVarValues(fvarChannel)
-                                                    : topology.GetNumVertices());
+    size_t const count =
+        isFVar ? topology.GetNumFVarValues(fvarChannel) : topology.GetNumVertices();
     std::vector<ValueRow<N>> from(coarse.size() / N), to(count);
     std::memcpy(from.data(), coarse.data(), coarse.size_bytes());
     if (isFVar)

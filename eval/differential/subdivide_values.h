@@ -13,7 +13,7 @@ std::vector<double> SubdivideValues(Far::TopologyRefiner const& refiner, int lev
                                     far_ext::SubdivisionRule rule, std::span<double const> coarse) {
     if (rule == far_ext::SubdivisionRule::Scheme) return RefineValues<N>(refiner, level, coarse);
     far_ext::SparseRows const rows = far_ext::BuildButterfly(refiner, level);
-    std::vector<double> fine(static_cast<size_t>(rows.GetNumRows()) * N);
+    std::vector<double> fine(rows.GetNumRows() * N);
     rows.Apply(coarse.data(), fine.data(), static_cast<int>(N));
     return fine;
 }

@@ -17,7 +17,7 @@ constexpr float kSmoothedShare = 4.0f;
 
 VCycle::VCycle(std::vector<MultigridLevel> const& levels) : _levels(levels), _work(levels.size()) {
     for (size_t k = 0; k < levels.size(); ++k) {
-        auto const numRows = static_cast<size_t>(levels[k].GetNumRows());
+        size_t const numRows = levels[k].GetNumRows();
         for (auto* rows : {&_work[k].rightSide, &_work[k].x, &_work[k].next})
             rows->assign(numRows, FloatLanes::Zero());
     }
@@ -34,7 +34,7 @@ void VCycle::SetWeights(std::vector<RowWeights<float>> weights,
 /// One unknown of each singular block stays zero; what is left is positive definite.
 void VCycle::FactoriseCoarsest() {
     MultigridLevel const& level = _levels.front();
-    _pins.assign(static_cast<size_t>(level.numUnknowns), 0);
+    _pins.assign(level.numUnknowns, 0);
     for (auto const& block : level.blocks) {
         if (block.isSingular && _areConstantsFree) _pins[block.begin] = -1;
     }

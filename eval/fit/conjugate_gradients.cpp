@@ -24,7 +24,7 @@ public:
     explicit ConjugateGradients(LimitProblem const& problem)
         : _problem(problem),
           _count(problem.A.GetNumVertices()),
-          _r(static_cast<size_t>(_count) * Length, 0.0),
+          _r(At(_count), 0.0),
           _p(_r),
           _q(_r) {}
 
@@ -154,15 +154,12 @@ private:
     /// Of the first channel: the step lengths are the Lanczos matrix of A.
     double FindSmallestRitzValue() const {
         Eigen::Index size = 0;
-        while (size < static_cast<Eigen::Index>(_alphas.size()) &&
-               _alphas[static_cast<size_t>(size)] > 0.0)
-            ++size;
+        while (size < static_cast<Eigen::Index>(_alphas.size()) && _alphas[size] > 0.0) ++size;
         if (size == 0) return 0.0;
         Eigen::VectorXd diagonal(size), beside(std::max<Eigen::Index>(size - 1, 0));
         for (Eigen::Index k = 0; k < size; ++k) {
-            size_t const i = static_cast<size_t>(k);
-            diagonal[k] = 1.0 / _alphas[i] + (k > 0 ? _betas[i - 1] / _alphas[i - 1] : 0.0);
-            if (k + 1 < size) beside[k] = std::sqrt(_betas[i]) / _alphas[i];
+            diagonal[k] = 1.0 / _alphas[k] + (k > 0 ? _betas[k - 1] / _alphas[k - 1] : 0.0);
+            if (k + 1 < size) beside[k] = std::sqrt(_betas[k]) / _alphas[k];
         }
         Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
         solver.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly);

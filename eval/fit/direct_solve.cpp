@@ -25,7 +25,7 @@ struct System {
 System MakeSystem(LimitProblem const& problem, Stage stage, std::vector<Index> const& pinned) {
     LimitOperator const& A = problem.A;
     System system;
-    std::vector<int> place(static_cast<size_t>(A.GetNumVertices()), -1);
+    std::vector<int> place(A.GetNumVertices(), -1);
     for (Index row : pinned) place[row] = -2;
     for (Index row = 0; row < A.GetNumVertices(); ++row) {
         if (A.GetClass(row).stage != stage || place[row] == -2) continue;
@@ -36,19 +36,16 @@ System MakeSystem(LimitProblem const& problem, Stage stage, std::vector<Index> c
     system.right.resize(size, problem.length);
     std::vector<Eigen::Triplet<double>> entries;
     for (Eigen::Index i = 0; i < size; ++i) {
-        Index const row = system.unknowns[static_cast<size_t>(i)];
+        Index const row = system.unknowns[i];
         double const scale = A.GetClass(row).scale;
-        auto const at = [&](double const* values, Index vertex, int channel) {
-            return values[static_cast<size_t>(vertex) * problem.length + channel];
-        };
         for (int c = 0; c < problem.length; ++c)
-            system.right(i, c) = scale * at(problem.data, row, c);
+            system.right(i, c) = scale * problem.GetData(row)[c];
         A.ForEachEntry(row, [&](Index column, double weight) {
             if (place[column] >= 0) {
                 entries.emplace_back(static_cast<int>(i), place[column], scale * weight);
             } else if (place[column] == -1) {
                 for (int c = 0; c < problem.length; ++c)
-                    system.right(i, c) -= scale * weight * at(problem.solution, column, c);
+                    system.right(i, c) -= scale * weight * problem.GetSolution(column)[c];
             }
         });
     }
@@ -64,10 +61,8 @@ bool SolveWith(Solver& solver, System const& system, LimitProblem const& problem
     if (solver.info() != Eigen::Success) return false;
     Rows const solution = solver.solve(system.right);
     for (Eigen::Index i = 0; i < solution.rows(); ++i) {
-        size_t const at =
-            static_cast<size_t>(system.unknowns[static_cast<size_t>(i)]) * problem.length;
-        for (int c = 0; c < problem.length; ++c)
-            problem.solution[at + static_cast<size_t>(c)] = solution(i, c);
+        double* const row = problem.GetSolution(system.unknowns[i]);
+        for (int c = 0; c < problem.length; ++c) row[c] = solution(i, c);
     }
     return true;
 }
@@ -86,8 +81,7 @@ bool HasValence2(LimitOperator const& A) {
 void SolveCurves(LimitProblem const& problem) {
     for (Index row = 0; row < problem.A.GetNumVertices(); ++row) {
         if (problem.A.GetClass(row).stage != Stage::Fixed) continue;
-        size_t const at = static_cast<size_t>(row) * problem.length;
-        std::copy_n(problem.data + at, problem.length, problem.solution + at);
+        std::copy_n(problem.GetData(row), problem.length, problem.GetSolution(row));
     }
     if (problem.A.GetNumRows(Stage::Curve) == 0) return;
     System const system = MakeSystem(problem, Stage::Curve, {});
@@ -96,9 +90,7 @@ void SolveCurves(LimitProblem const& problem) {
 }
 
 IterationResult SolveDirectly(LimitProblem const& problem, std::vector<Index> const& pinned) {
-    for (Index row : pinned)
-        std::fill_n(problem.solution + static_cast<size_t>(row) * problem.length, problem.length,
-                    0.0);
+    for (Index row : pinned) std::fill_n(problem.GetSolution(row), problem.length, 0.0);
     System const system = MakeSystem(problem, Stage::Rest, pinned);
     bool isSolved = false;
     if (problem.A.IsSymmetric() && !HasValence2(problem.A)) {

@@ -84,11 +84,10 @@ void Join(SolveReport& report, SolveReport const& block) {
 /// values[vertices[i]].
 void Gather(std::span<double const> values, int length, int first, int count,
             std::vector<Index> const& vertices, std::span<double> rows) {
+    size_t const stride = length;
     WithLength(count, [&]<int Count>() {
         ForEachRow(static_cast<Index>(vertices.size()), [&](Index row) {
-            double const* const from =
-                &values[static_cast<size_t>(vertices[row]) * static_cast<size_t>(length) +
-                        static_cast<size_t>(first)];
+            double const* const from = &values[vertices[row] * stride + first];
             DoubleRow<Count>::Load(from, 0).Store(rows.data(), row);
         });
     });
@@ -97,11 +96,10 @@ void Gather(std::span<double const> values, int length, int first, int count,
 /// The reverse.
 void Scatter(std::span<double const> rows, int length, int first, int count,
              std::vector<Index> const& vertices, std::span<double> values) {
+    size_t const stride = length;
     WithLength(count, [&]<int Count>() {
         ForEachRow(static_cast<Index>(vertices.size()), [&](Index row) {
-            double* const to =
-                &values[static_cast<size_t>(vertices[row]) * static_cast<size_t>(length) +
-                        static_cast<size_t>(first)];
+            double* const to = &values[vertices[row] * stride + first];
             DoubleRow<Count>::Load(rows.data(), row).Store(to, 0);
         });
     });
@@ -125,7 +123,7 @@ char const* GetName(SolveMethod method) {
 
 double FindSize(std::span<double const> values, int length) {
     if (values.empty()) return 1.0;
-    size_t const n = static_cast<size_t>(length);
+    size_t const n = length;
     std::vector<double> low(values.begin(), values.begin() + length), high(low);
     for (size_t i = n; i < values.size(); i += n) {
         for (size_t c = 0; c < n; ++c) {
@@ -145,8 +143,7 @@ Interpolator::Interpolator(Far::TopologyRefiner const& refiner, int level,
 std::vector<double> Interpolator::FindLimits(std::span<double const> values, int length) const {
     std::vector<double> result(values.size());
     ForEachBlockOfChannels(length, [&](int first, int count) {
-        far_ext::LargeArray<double> rows(_vertices.size() * static_cast<size_t>(count)),
-            limits(rows.size());
+        far_ext::LargeArray<double> rows(_vertices.size() * count), limits(rows.size());
         Gather(values, length, first, count, _vertices, rows);
         _A.Apply(rows, count, limits);
         Scatter(limits, length, first, count, _vertices, result);
@@ -161,7 +158,7 @@ SolveReport Interpolator::Solve(std::span<double const> M, int length, std::span
     report.converged = true;
     double const size = FindSize(M, length);
     ForEachBlockOfChannels(length, [&](int first, int count) {
-        far_ext::LargeArray<double> data(_vertices.size() * static_cast<size_t>(count)),
+        far_ext::LargeArray<double> data(_vertices.size() * count),
             own(count < length ? data.size() : 0);
         std::span<double> const solution =
             count < length ? std::span<double>(own) : P;  // P serves as memory until the end
@@ -290,7 +287,7 @@ SolveReport Interpolator::SolveBlock(LimitProblem& problem,
 
 double Interpolator::EstimateSmallestEigenvalue(int steps) const {
     if (_A.GetNumRows(LimitOperator::Stage::Rest) == 0) return 1.0;
-    size_t const count = static_cast<size_t>(_A.GetNumVertices());
+    size_t const count = _A.GetNumVertices();
     std::vector<double> noise = MakeNoise(count);
     _singular.Project(noise.data(), 1);
     std::vector<double> solution(count, 0.0);

@@ -125,10 +125,10 @@ LimitOperator LimitOperator::Build(Far::TopologyRefiner const& refiner, int leve
     LimitOperator result;
     size_t numNeighbours = 0;  // each corner sees the next corner and those across the face
     for (Index face = 0; face < topology.GetNumFaces(); ++face) {
-        size_t const size = static_cast<size_t>(topology.GetFaceVertices(face).size());
+        size_t const size = topology.GetFaceVertices(face).size();
         numNeighbours += size * (size - 2);
     }
-    size_t const numVertices = static_cast<size_t>(builder.GetNumVertices());
+    size_t const numVertices = builder.GetNumVertices();
     result._starts.reserve(numVertices + 1);
     result._classes.reserve(numVertices);
     result._indices.reserve(numNeighbours);

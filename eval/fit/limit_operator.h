@@ -176,8 +176,7 @@ void LimitOperator::ForEachRow(Index begin, Index end, Stage first, typename Row
 template <class Visit>
 void LimitOperator::ForEachEntry(Index row, Visit visit) const {
     RowClass const& c = GetClass(row);
-    double const* const own =
-        c.isExplicit ? &_weights[static_cast<size_t>(_indices[_starts[row]])] : nullptr;
+    double const* const own = c.isExplicit ? &_weights[_indices[_starts[row]]] : nullptr;
     visit(row, own ? own[0] : c.weights[0]);
     auto const neighbours = GetNeighbours(row);
     for (size_t k = 0; k < neighbours.size(); ++k) {

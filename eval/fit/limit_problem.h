@@ -22,6 +22,13 @@ struct LimitProblem {
     double tolerance = 1e-6;  ///< of max |M - A P|, in the unit `size`; a row's length counts
     int maxApplications = 1000;
     OnIteration onIteration{};
+
+    /// The row of a vertex, in the data and in the solution.
+    double const* GetData(Index vertex) const { return data + GetOffset(vertex); }
+    double* GetSolution(Index vertex) const { return solution + GetOffset(vertex); }
+
+private:
+    size_t GetOffset(Index vertex) const { return static_cast<size_t>(vertex) * length; }
 };
 
 /// Rows whose sums and maxima are found in one block (see eval/parallel/rows.h).

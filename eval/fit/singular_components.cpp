@@ -24,7 +24,7 @@ SingularComponents::SingularComponents(LimitOperator const& A) {
     std::vector<signed char> signs;  // of all vertices: 0 where not seen; made when first needed
     for (Index seed = 0; seed < A.GetNumVertices(); ++seed) {
         if (!A.GetClass(seed).isEvenCubic) continue;
-        if (signs.empty()) signs.assign(static_cast<size_t>(A.GetNumVertices()), 0);
+        if (signs.empty()) signs.assign(A.GetNumVertices(), 0);
         if (signs[seed] != 0) continue;
         // Through the whole patch of such vertices, also where it turns out not to be a component
         // of its own.

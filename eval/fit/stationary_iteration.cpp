@@ -40,7 +40,7 @@ class Correction {
 public:
     explicit Correction(LimitOperator const& A)
         : _A(A),
-          _right(static_cast<size_t>(A.GetNumVertices()) * Row::kStride, 0.0f),
+          _right(A.GetNumVertices() * Row::kStride, 0.0f),
           _current(_right),
           _previous(_right) {}
 
@@ -52,7 +52,7 @@ public:
     std::vector<float> Take(std::span<Step const> steps) {
         if (steps.size() == 1) return {TakeOne(steps[0])};
         Index const numRows = _A.GetNumVertices();
-        auto const numBlocks = static_cast<size_t>(CountBlocks(numRows, kRowsPerBlock));
+        size_t const numBlocks = CountBlocks(numRows, kRowsPerBlock);
         std::vector<std::vector<float>> maxima(steps.size(), std::vector<float>(numBlocks, 0.0f));
         float* const buffers[] = {_current.data(), _previous.data()};
         RunStepsInOnePass(static_cast<Index>(steps.size()), numRows, _A.GetBandwidth(),
@@ -170,8 +170,7 @@ private:
                     [&](Index row, auto const&, Row const&, Row const& limit) {
                         Row const residual = Row::Load(_problem.data, row) - limit;
                         largest = Larger(residual.SquaredLength(), largest);
-                        float* const right =
-                            _correction.GetRight() + static_cast<size_t>(row) * _correction.kStride;
+                        float* const right = _correction.GetRight() + row * _correction.kStride;
                         for (size_t i = 0; i < Length; ++i)
                             right[i] = static_cast<float>(residual.values[i] / _problem.size);
                     });
@@ -236,9 +235,8 @@ private:
 
     void AddCorrection() {
         ForEachRow(_problem.A.GetNumVertices(), [&](Index row) {
-            float const* const e =
-                _correction.Get() + static_cast<size_t>(row) * _correction.kStride;
-            double* const p = _problem.solution + static_cast<size_t>(row) * Length;
+            float const* const e = _correction.Get() + row * _correction.kStride;
+            double* const p = _problem.GetSolution(row);
             for (size_t i = 0; i < Length; ++i) p[i] += _problem.size * static_cast<double>(e[i]);
         });
     }

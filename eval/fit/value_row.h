@@ -19,12 +19,11 @@ struct DoubleRow {
 
     static DoubleRow Load(double const* rows, Index vertex) {
         DoubleRow row;
-        std::memcpy(row.values.data(), rows + static_cast<size_t>(vertex) * kStride,
-                    sizeof row.values);
+        std::memcpy(row.values.data(), rows + vertex * kStride, sizeof row.values);
         return row;
     }
     void Store(double* rows, Index vertex) const {
-        std::memcpy(rows + static_cast<size_t>(vertex) * kStride, values.data(), sizeof values);
+        std::memcpy(rows + vertex * kStride, values.data(), sizeof values);
     }
 
     friend DoubleRow operator+(DoubleRow a, DoubleRow const& b) {
@@ -77,11 +76,11 @@ struct FloatRow<4> {
 
     static FloatRow Load(float const* rows, Index vertex) {
         FloatRow row;
-        std::memcpy(&row.values, rows + static_cast<size_t>(vertex) * kStride, sizeof row.values);
+        std::memcpy(&row.values, rows + vertex * kStride, sizeof row.values);
         return row;
     }
     void Store(float* rows, Index vertex) const {
-        std::memcpy(rows + static_cast<size_t>(vertex) * kStride, &values, sizeof values);
+        std::memcpy(rows + vertex * kStride, &values, sizeof values);
     }
 
     friend FloatRow operator+(FloatRow a, FloatRow b) { return {a.values + b.values}; }

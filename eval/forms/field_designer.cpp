@@ -33,8 +33,7 @@ public:
         std::vector<Eigen::Triplet<double>> kept;
         kept.reserve(entries.size());
         for (auto const& entry : entries) {
-            Index const row = _places[static_cast<size_t>(entry.row())],
-                        column = _places[static_cast<size_t>(entry.col())];
+            Index const row = _places[entry.row()], column = _places[entry.col()];
             if (row >= 0 && column >= 0 && row >= column)
                 kept.emplace_back(row, column, entry.value());
         }
@@ -77,10 +76,10 @@ FieldDesigner::FieldDesigner(Far::TopologyLevel const& level, std::span<double c
       _components(far_ext::FaceComponents::Find(level)),
       _stars(far_ext::FindHodgeStars(level, positions)),
       _d1(far_ext::BuildD1(level)) {
-    _componentOfVertex.assign(static_cast<size_t>(level.GetNumVertices()), -1);
-    _isOpen.assign(static_cast<size_t>(_components.count), 0);
+    _componentOfVertex.assign(level.GetNumVertices(), -1);
+    _isOpen.assign(_components.count, 0);
     _isFixedVertex.assign(_componentOfVertex.size(), 0);
-    _isEmptyEdge.assign(static_cast<size_t>(level.GetNumEdges()), 0);
+    _isEmptyEdge.assign(level.GetNumEdges(), 0);
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         for (Index vertex : level.GetFaceVertices(face))
             _componentOfVertex[vertex] = _components.ofFace[face];
@@ -98,7 +97,7 @@ FieldDesigner::FieldDesigner(Far::TopologyLevel const& level, std::span<double c
 std::vector<FieldDesigner::Imbalance> FieldDesigner::FindImbalance(
     std::span<double const> strengths, std::vector<int> const& componentOf,
     AtBoundary freeBoundary) const {
-    std::vector<double> sums(static_cast<size_t>(_components.count), 0.0), sizes(sums);
+    std::vector<double> sums(_components.count, 0.0), sizes(sums);
     for (size_t i = 0; i < strengths.size(); ++i) {
         if (componentOf[i] < 0) continue;
         sums[componentOf[i]] += strengths[i];
@@ -131,8 +130,7 @@ int FieldDesigner::CountHarmonics() const {
 
 std::vector<double> FieldDesigner::MakeGradient(std::span<double const> sources) {
     if (!_vertices) {
-        std::vector<char> isFixed = _isFixedVertex,
-                          isPinned(static_cast<size_t>(_components.count), 0);
+        std::vector<char> isFixed = _isFixedVertex, isPinned(_components.count, 0);
         for (size_t vertex = 0; vertex < isFixed.size(); ++vertex) {
             int const component = _componentOfVertex[vertex];
             if (component < 0) {
@@ -156,7 +154,7 @@ std::vector<double> FieldDesigner::MakeGradient(std::span<double const> sources)
     std::vector<double> right(sources.size());
     for (size_t i = 0; i < right.size(); ++i) right[i] = -sources[i];
     std::vector<double> const f = _vertices->Solve(right);
-    std::vector<double> form(static_cast<size_t>(_level.GetNumEdges()));
+    std::vector<double> form(_level.GetNumEdges());
     for (Index edge = 0; edge < _level.GetNumEdges(); ++edge) {
         auto const ends = _level.GetEdgeVertices(edge);
         form[edge] = f[std::max(ends[0], ends[1])] - f[std::min(ends[0], ends[1])];
@@ -166,8 +164,7 @@ std::vector<double> FieldDesigner::MakeGradient(std::span<double const> sources)
 
 std::vector<double> FieldDesigner::MakeVortex(std::span<double const> vortices) {
     if (!_faces) {
-        std::vector<char> isFixed(vortices.size(), 0),
-            isPinned(static_cast<size_t>(_components.count), 0);
+        std::vector<char> isFixed(vortices.size(), 0), isPinned(_components.count, 0);
         for (size_t face = 0; face < isFixed.size(); ++face) {
             int const component = _components.ofFace[face];
             if ((_isOpen[component] && _atBoundary == AtBoundary::Tangent) || isPinned[component])
@@ -186,8 +183,7 @@ std::vector<double> FieldDesigner::MakeVortex(std::span<double const> vortices) 
         }
         _faces = std::make_unique<Factorisation>(isFixed, entries);
     }
-    std::vector<double> form(static_cast<size_t>(_level.GetNumEdges()), 0.0),
-        missing(vortices.begin(), vortices.end());
+    std::vector<double> form(_level.GetNumEdges(), 0.0), missing(vortices.begin(), vortices.end());
     for (int step = 0; step < 2;
          ++step) {  // the second one gives back the digits that large values of psi took
         std::vector<double> const psi = _faces->Solve(missing);
@@ -206,7 +202,7 @@ std::vector<double> FieldDesigner::MakeVortex(std::span<double const> vortices) 
 }
 
 std::vector<double> FieldDesigner::FindInflow(std::span<double const> form) const {
-    std::vector<double> inflow(static_cast<size_t>(_level.GetNumVertices()), 0.0);
+    std::vector<double> inflow(_level.GetNumVertices(), 0.0);
     for (Index edge = 0; edge < _level.GetNumEdges(); ++edge) {
         auto const ends = _level.GetEdgeVertices(edge);
         double const flow = _stars.edge[edge] * form[edge];

@@ -51,8 +51,7 @@ std::vector<double> MatchVectors(Far::TopologyLevel const& level, std::span<doub
         for (int axis = 0; axis < 3; ++axis) {
             for (Index face : faces)
                 picks.emplace_back(row + axis, 3 * face + axis, weight * stars.area[face] / area);
-            right[row + axis] =
-                faces.empty() ? 0.0 : weight * wanted[i].vector[static_cast<size_t>(axis)];
+            right[row + axis] = faces.empty() ? 0.0 : weight * wanted[i].vector[axis];
         }
     }
     RowMatrix pick(right.size(), faceVectors.rows());
@@ -60,7 +59,7 @@ std::vector<double> MatchVectors(Far::TopologyLevel const& level, std::span<doub
     RowMatrix const fit = pick * faceVectors;
 
     Triplets divergences;
-    std::vector<double> dualAreas(static_cast<size_t>(level.GetNumVertices()), 0.0);
+    std::vector<double> dualAreas(level.GetNumVertices(), 0.0);
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         auto const vertices = level.GetFaceVertices(face);
         for (Index vertex : vertices) dualAreas[vertex] += stars.area[face] / vertices.size();

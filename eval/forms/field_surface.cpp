@@ -57,7 +57,7 @@ FieldSurface::FieldSurface(far_ext::ControlMesh const& cage, std::span<double co
 void FieldSurface::FindVectors(Far::TopologyRefiner const& refiner) {
     auto const level = refiner.GetLevel(refiner.GetMaxLevel());
     int const valence = refiner.GetSchemeType() == Sdc::SCHEME_LOOP ? 6 : 4;
-    std::vector<char> isNeeded(static_cast<size_t>(level.GetNumVertices()), 0);
+    std::vector<char> isNeeded(level.GetNumVertices(), 0);
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         auto const corners = level.GetFaceVertices(face);
         bool const isRegular = std::all_of(corners.begin(), corners.end(), [&](Index vertex) {

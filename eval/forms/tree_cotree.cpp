@@ -12,9 +12,7 @@ namespace {
 /// Disjoint sets, to grow a spanning tree.
 class Sets {
 public:
-    explicit Sets(Index count) : _parents(static_cast<size_t>(count)) {
-        std::iota(_parents.begin(), _parents.end(), 0);
-    }
+    explicit Sets(Index count) : _parents(count) { std::iota(_parents.begin(), _parents.end(), 0); }
 
     Index Find(Index i) {
         while (_parents[i] != i) i = _parents[i] = _parents[_parents[i]];
@@ -43,7 +41,7 @@ struct DualTree {
 
 DualTree GrowDualTree(Far::TopologyLevel const& level, std::vector<Role>& roles, bool isRelative) {
     DualTree tree;
-    tree.parentEdge.assign(static_cast<size_t>(level.GetNumFaces()), -1);
+    tree.parentEdge.assign(level.GetNumFaces(), -1);
     std::vector<char> isReached(tree.parentEdge.size(), 0);
     auto const reach = [&](Index face, Index edge) {
         isReached[face] = 1;
@@ -79,7 +77,7 @@ DualTree GrowDualTree(Far::TopologyLevel const& level, std::vector<Role>& roles,
 }  // namespace
 
 std::vector<std::vector<double>> FindClosedForms(Far::TopologyLevel const& level, bool isRelative) {
-    std::vector<Role> roles(static_cast<size_t>(level.GetNumEdges()), Role::None);
+    std::vector<Role> roles(level.GetNumEdges(), Role::None);
     Sets sets(level.GetNumVertices());
     auto const isBoundary = [&](Index edge) { return level.GetEdgeFaces(edge).size() == 1; };
     for (Index edge = 0; isRelative && edge < level.GetNumEdges(); ++edge) {
@@ -88,7 +86,7 @@ std::vector<std::vector<double>> FindClosedForms(Far::TopologyLevel const& level
         roles[edge] = Role::Tree;
     }
     if (isRelative) {  // the loops of a component are one point
-        std::vector<Index> first(static_cast<size_t>(level.GetNumVertices()), -1);
+        std::vector<Index> first(level.GetNumVertices(), -1);
         Sets components(level.GetNumVertices());
         for (Index edge = 0; edge < level.GetNumEdges(); ++edge)
             components.Join(level.GetEdgeVertices(edge)[0], level.GetEdgeVertices(edge)[1]);

@@ -9,6 +9,7 @@
 #include "eval/forms/vertex_covectors.h"
 #include "far_ext/forms/form_operators.h"
 #include "far_ext/forms/form_stencils.h"
+#include "far_ext/rows/points.h"
 #include "far_ext/topology/control_mesh.h"
 #include "far_ext/topology/refiner.h"
 
@@ -93,13 +94,13 @@ Basis MakeBasis() {
     auto const stencils = far_ext::ComposeFormStencils(*refiner, 2).s1;
     std::vector<double> const points =
         RefineValues<3>(*refiner, 2, RefineValues<3>(*refiner, 1, positions));
+    far_ext::Points const lattice(points);
 
     Index const face = 2 * ((kSide / 2) * (kSide - 1) + kSide / 2);  // corners (4,4), (5,4), (5,5)
     std::vector<std::pair<Index, Terms>> nodes;
     Eigen::Matrix<double, kNumTerms, kNumTerms> system;
     for (Index vertex = 0; vertex < fine.GetNumVertices(); ++vertex) {
-        double const x = points[3 * static_cast<size_t>(vertex)] - kSide / 2,
-                     y = points[3 * static_cast<size_t>(vertex) + 1] - kSide / 2;
+        double const x = lattice[vertex].x() - kSide / 2, y = lattice[vertex].y() - kSide / 2;
         double const s = x - y, t = y;  // (1,0) is s, (1,1) is t
         if (s < -0.01 || t < -0.01 || s + t > 1.01) continue;
         Terms const terms = MakeTerms(s, t);
@@ -117,8 +118,7 @@ Basis MakeBasis() {
     for (size_t place = 0; place < kNumPlaces; ++place) {
         if (std::find(seen.begin(), seen.end(), places[place].edge) != seen.end()) continue;
         seen.push_back(places[place].edge);
-        std::vector<double> form(static_cast<size_t>(base.GetNumEdges()), 0.0),
-            refined(static_cast<size_t>(fine.GetNumEdges()));
+        std::vector<double> form(base.GetNumEdges(), 0.0), refined(fine.GetNumEdges());
         form[places[place].edge] = places[place].sign;
         stencils.Apply(form.data(), refined.data(), 1);
         Eigen::Matrix<double, kNumTerms, 2> values;

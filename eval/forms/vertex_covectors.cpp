@@ -8,6 +8,7 @@
 
 #include "far_ext/forms/find_wheel.h"
 #include "far_ext/forms/form_operators.h"
+#include "far_ext/rows/points.h"
 
 namespace limn::eval {
 
@@ -31,8 +32,8 @@ double FindEigenvalue(bool isLoop, double angle) {
 
 TangentMask MakeEmpty(Wheel const& wheel) {
     TangentMask mask;
-    mask.ends.assign(static_cast<size_t>(wheel.GetNumSpokes()), 0.0);
-    mask.corners.assign(static_cast<size_t>(wheel.GetNumFaces()), 0.0);
+    mask.ends.assign(wheel.GetNumSpokes(), 0.0);
+    mask.corners.assign(wheel.GetNumFaces(), 0.0);
     return mask;
 }
 
@@ -47,8 +48,8 @@ std::array<TangentMask, 2> MakeSmoothMasks(bool isLoop, Wheel const& wheel) {
         auto const wave = [&](int i) { return a == 0 ? std::cos(angle * i) : std::sin(angle * i); };
         masks[a].eigenvalue = FindEigenvalue(isLoop, angle);
         for (int i = 0; i < k; ++i) {
-            masks[a].ends[static_cast<size_t>(i)] = edge * wave(i);
-            if (!isLoop) masks[a].corners[static_cast<size_t>(i)] = wave(i) + wave(i + 1);
+            masks[a].ends[i] = edge * wave(i);
+            if (!isLoop) masks[a].corners[i] = wave(i) + wave(i + 1);
         }
     }
     return masks;
@@ -61,7 +62,7 @@ std::array<TangentMask, 2> MakeCurveMasks(bool isLoop, Wheel const& wheel, int f
     std::array<TangentMask, 2> masks{MakeEmpty(wheel), MakeEmpty(wheel)};
     int const k = wheel.GetNumFaces(), numSpokes = wheel.GetNumSpokes();
     auto const end = [&](TangentMask& mask, int i) -> double& {
-        return mask.ends[static_cast<size_t>((first + i) % numSpokes)];
+        return mask.ends[(first + i) % numSpokes];
     };
     end(masks[0], 0) = 1.0;
     end(masks[0], size) = -1.0;
@@ -79,11 +80,11 @@ std::array<TangentMask, 2> MakeCurveMasks(bool isLoop, Wheel const& wheel, int f
     for (int j = 0; !isLoop && j < size; ++j) {
         double const corner =
             (std::sin(angle * j) + std::sin(angle * (j + 1))) / (4.0 * (4.0 * lambda - 1.0));
-        cornerSum += across.corners[static_cast<size_t>((first + j) % k)] = corner;
+        cornerSum += across.corners[(first + j) % k] = corner;
     }
-    // At the ends the curve's own rule: what the eigenvalue equation leaves for them; the vertex
+// At the ends the curve's own rule: what the eigenvalue equation leaves for them; the vertex
     // takes the rest, so that the mask is blind to translations.
-    double const firstCorner = across.corners[static_cast<size_t>(first % k)];
+    double const firstCorner = across.corners[first % k];
     double const atEnds =
         isLoop ? (std::sin(angle) / 8.0 - sum / 8.0) / (lambda - 0.25)
                : (std::sin(angle) / 16.0 + firstCorner / 4.0 - (sum + cornerSum) / 8.0) /
@@ -98,8 +99,7 @@ std::array<TangentMask, 2> MakeCornerMasks(Wheel const& wheel, int first, int si
     std::array<TangentMask, 2> masks{MakeEmpty(wheel), MakeEmpty(wheel)};
     for (size_t a = 0; a < 2; ++a) {
         masks[a].vertex = -1.0;
-        masks[a].ends[static_cast<size_t>((first + (a == 0 ? 0 : size)) % wheel.GetNumSpokes())] =
-            1.0;
+        masks[a].ends[(first + (a == 0 ? 0 : size)) % wheel.GetNumSpokes()] = 1.0;
     }
     return masks;
 }
@@ -108,8 +108,7 @@ std::array<TangentMask, 2> MakeMasks(bool isLoop, Wheel const& wheel) {
     std::vector<int> cuts;
     int const last = wheel.GetNumSpokes() - 1;
     for (int i = 0; i <= last; ++i) {
-        if (wheel.parent.isSharp[static_cast<size_t>(i)] ||
-            (!wheel.isInterior && (i == 0 || i == last)))
+        if (wheel.parent.isSharp[i] || (!wheel.isInterior && (i == 0 || i == last)))
             cuts.push_back(i);
     }
     // A wheel in one piece has two tangents; one that is cut shows its first fan's.
@@ -149,13 +148,12 @@ VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel co
     int const numSides = isLoop ? 3 : 4;
     far_ext::WheelRows const local = far_ext::MakeWheelRows(scheme, wheel);
     Eigen::Index const k = wheel.GetNumFaces();
-    size_t const numSpokes = static_cast<size_t>(wheel.GetNumSpokes());
+    size_t const numSpokes = wheel.GetNumSpokes();
     auto const chain = [&](std::vector<double> const& x) {
         return Eigen::Map<Eigen::VectorXd const>(x.data(), k);
     };
     Eigen::MatrixXd shares(k, k);
-    for (Eigen::Index j = 0; j < k; ++j)
-        shares.row(j) = chain(local.share[static_cast<size_t>(j)]).transpose();
+    for (Eigen::Index j = 0; j < k; ++j) shares.row(j) = chain(local.share[j]).transpose();
 
     auto const masks = MakeMasks(isLoop, wheel);
     Rows rows;
@@ -165,14 +163,14 @@ VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel co
         row.vertex = mask.vertex;
         row.ends = mask.ends;
         row.corners = mask.corners;
-        row.edges.assign(numSpokes + static_cast<size_t>(k * (numSides - 2)), 0.0);
+        row.edges.assign(numSpokes + k * (numSides - 2), 0.0);
         auto const addSide = [&](Eigen::Index face, int m, double weight) {
             if (m == 0)
-                row.edges[static_cast<size_t>(face)] += weight;
+                row.edges[face] += weight;
             else if (m == numSides - 1)
-                row.edges[(static_cast<size_t>(face) + 1) % numSpokes] -= weight;
+                row.edges[(face + 1) % numSpokes] -= weight;
             else
-                row.edges[numSpokes + static_cast<size_t>(face * (numSides - 2) + m - 1)] += weight;
+                row.edges[numSpokes + face * (numSides - 2) + m - 1] += weight;
         };
         // The mask as a chain tau with boundary t, and r: what one step of S1 makes of it beside
         // lambda tau, as a 2-chain.
@@ -188,13 +186,11 @@ VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel co
             residue[(static_cast<Eigen::Index>(i) + k - 1) % k] -= q;
         }
         for (Eigen::Index j = 0; !isLoop && j < k; ++j) {
-            double const t = mask.corners[static_cast<size_t>(j)];
+            double const t = mask.corners[j];
             if (t == 0.0) continue;
             for (int m = 0; m < 4; ++m)
                 addSide(j, m, m < 2 ? 0.5 * t : -0.5 * t);  // the mean of both ways round
-            residue += 0.5 * t *
-                       (chain(local.flow[static_cast<size_t>(j)]) +
-                        chain(local.flow[(static_cast<size_t>(j) + 1) % numSpokes]));
+            residue += 0.5 * t * (chain(local.flow[j]) + chain(local.flow[(j + 1) % numSpokes]));
         }
         // Faces are added until the chain is an eigenvector: h s + r = lambda h, since d1 S1 = S2
         // d1.
@@ -212,7 +208,7 @@ VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel co
 VertexCovectors::VertexCovectors(Far::TopologyRefiner const& refiner, int level)
     : _refiner(refiner), _level(refiner.GetLevel(level)) {
     for (Index vertex = 0; vertex < _level.GetNumVertices(); ++vertex) {
-        size_t const k = static_cast<size_t>(_level.GetVertexFaces(vertex).size());
+        size_t const k = _level.GetVertexFaces(vertex).size();
         if (k == 0 || !far_ext::IsSmoothInterior(_level, vertex)) continue;
         if (_plainRows.size() <= k) _plainRows.resize(k + 1);
         if (!_plainRows[k])
@@ -235,22 +231,20 @@ VertexCovector VertexCovectors::Find(Index vertex, std::span<double const> form,
     if (!isPlain)
         own = MakeRows(_refiner.GetSchemeType(),
                        far_ext::FindWheel(_refiner, _level, nullptr, vertex));
-    Rows const& rows = isPlain ? *_plainRows[static_cast<size_t>(faces.size())] : own;
+    Rows const& rows = isPlain ? *_plainRows[faces.size()] : own;
 
-    auto const at = [&](Index v) {
-        return Eigen::Map<Eigen::Vector3d const>(&positions[3 * static_cast<size_t>(v)]);
-    };
-    for (size_t a = 0; a < 2; ++a) result.tangents[a] = rows[a].vertex * at(vertex);
+    far_ext::Points const points(positions);
+    for (size_t a = 0; a < 2; ++a) result.tangents[a] = rows[a].vertex * points[vertex];
     for (int i = 0; i < edges.size(); ++i) {
         auto const ends = _level.GetEdgeVertices(edges[i]);
-        Eigen::Vector3d const end = at(ends[0] == vertex ? ends[1] : ends[0]);
+        Eigen::Vector3d const end = points[ends[0] == vertex ? ends[1] : ends[0]];
         double const value = far_ext::GetSignFrom(_level, edges[i], vertex) * form[edges[i]];
         for (size_t a = 0; a < 2; ++a) {
-            result.tangents[a] += rows[a].ends[static_cast<size_t>(i)] * end;
-            result.values[a] += rows[a].edges[static_cast<size_t>(i)] * value;
+            result.tangents[a] += rows[a].ends[i] * end;
+            result.values[a] += rows[a].edges[i] * value;
         }
     }
-    size_t place = static_cast<size_t>(edges.size());
+    size_t place = edges.size();
     for (int j = 0; j < faces.size(); ++j) {
         for (int m = 1; m < numSides - 1; ++m, ++place) {
             auto const side = far_ext::GetFaceSide(_level, faces[j], (corners[j] + m) % numSides);
@@ -258,9 +252,9 @@ VertexCovector VertexCovectors::Find(Index vertex, std::span<double const> form,
                 result.values[a] += rows[a].edges[place] * side.sign * form[side.edge];
         }
         if (numSides == 3) continue;
-        Eigen::Vector3d const corner = at(_level.GetFaceVertices(faces[j])[(corners[j] + 2) % 4]);
-        for (size_t a = 0; a < 2; ++a)
-            result.tangents[a] += rows[a].corners[static_cast<size_t>(j)] * corner;
+        Eigen::Vector3d const corner =
+            points[_level.GetFaceVertices(faces[j])[(corners[j] + 2) % 4]];
+        for (size_t a = 0; a < 2; ++a) result.tangents[a] += rows[a].corners[j] * corner;
     }
     return result;
 }

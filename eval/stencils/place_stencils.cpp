@@ -92,7 +92,7 @@ std::vector<SurfaceSample> PlaceStencils::EvaluateWith(std::span<double const> p
             SurfacePlace const& place = _places[i];
             if (!_surface.HasLimit(place.face)) continue;
             if (_rowOfPlace[i] >= 0) {
-                SurfaceDerivatives const derivatives = derive(static_cast<size_t>(_rowOfPlace[i]));
+                SurfaceDerivatives const derivatives = derive(_rowOfPlace[i]);
                 if (isTrusted(derivatives)) {
                     samples[i] = MakeSample(derivatives, orientation);
                     continue;

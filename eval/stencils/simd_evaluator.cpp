@@ -32,7 +32,7 @@ StencilJob MakeJob(float const* source, BufferDescriptor const& sourceDesc,
 far_ext::StencilRowsView MakeView(int const* sizes, int const* offsets, int const* indices,
                                   std::initializer_list<float const*> weights, int end) {
     far_ext::StencilRowsView view{sizes, offsets, indices, {}, 0, end, 0};
-    for (float const* set : weights) view.weights[static_cast<size_t>(view.numSets++)] = set;
+    for (float const* set : weights) view.weights[view.numSets++] = set;
     return view;
 }
 

@@ -25,7 +25,7 @@ int RegularSize(bool isLoop) {
 
 /// Interior, of regular valence, among regular faces, without sharpness.
 std::vector<char> FindRegularVertices(Level const& level, bool isLoop) {
-    std::vector<char> isRegular(static_cast<size_t>(level.GetNumVertices()), 0);
+    std::vector<char> isRegular(level.GetNumVertices(), 0);
     int const valence = RegularValence(isLoop), size = RegularSize(isLoop);
     ForEachRow(level.GetNumVertices(), [&](Index v) {
         auto const faces = level.GetVertexFaces(v);
@@ -63,7 +63,7 @@ void LimitSurface::Classify() {
         isBilinear || (_channel >= 0 && _refiner.GetSchemeOptions().GetFVarLinearInterpolation() ==
                                             Sdc::Options::FVAR_LINEAR_ALL);
     auto const isRegularVertex = FindRegularVertices(level, IsLoop());
-    _kinds.assign(static_cast<size_t>(level.GetNumFaces()), FaceKind::None);
+    _kinds.assign(level.GetNumFaces(), FaceKind::None);
     _ringOfFace.assign(_kinds.size(), nullptr);
 
     struct Scratch {
@@ -240,7 +240,7 @@ int FaceTree::GetChild(int parent, int child) {
         _nodes[parent].firstChild = static_cast<int>(_children.size());
         _children.resize(_children.size() + children.size(), -1);
     }
-    size_t const slot = static_cast<size_t>(_nodes[parent].firstChild + child);
+    size_t const slot = _nodes[parent].firstChild + child;
     if (_children[slot] >= 0) return _children[slot];
 
     auto const& step = children[child];

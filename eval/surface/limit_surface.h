@@ -198,7 +198,7 @@ void FaceTree::Split(int node, std::span<int> samples, std::span<double> s, std:
         return;
     }
     // A stable counting sort by child.
-    size_t const base = static_cast<size_t>(samples.data() - _samples.data());
+    size_t const base = samples.data() - _samples.data();
     size_t count[5] = {0, 0, 0, 0, 0};
     for (size_t i = 0; i < samples.size(); ++i) {
         int const child = GetChildAt(_isLoop, s[i], t[i]);

@@ -14,11 +14,11 @@ namespace {
 /// The face that evaluates each vertex: one that is a plain patch where there is one, else the
 /// first.
 std::vector<Index> ChooseFaces(LimitSurface const& surface, Far::TopologyLevel const& level) {
-    std::vector<Index> chosen(static_cast<size_t>(level.GetNumVertices()), -1);
+    std::vector<Index> chosen(level.GetNumVertices(), -1);
     for (Index face = 0; face < surface.GetNumFaces(); ++face) {
         if (!surface.HasLimit(face)) continue;
         for (Index vertex : level.GetFaceVertices(face)) {
-            Index& known = chosen[static_cast<size_t>(vertex)];
+            Index& known = chosen[vertex];
             if (known < 0 || (surface.IsPlainPatch(face) && !surface.IsPlainPatch(known)))
                 known = face;
         }
@@ -44,13 +44,13 @@ VertexLimits EvaluateVertexLimits(LimitSurface const& surface, std::span<double 
             auto const vertices = level.GetFaceVertices(face);
             bool isBound = false;
             for (int corner = 0; corner < vertices.size(); ++corner) {
-                size_t const vertex = static_cast<size_t>(vertices[corner]);
+                size_t const vertex = vertices[corner];
                 if (chosen[vertex] != face) continue;
                 if (!isBound) tree.Bind(face);
                 isBound = true;
                 auto const place = GetCornerPlace(surface, face, corner);
                 for (int c = 0; c < length; ++c) {
-                    limits.values[vertex * static_cast<size_t>(length) + static_cast<size_t>(c)] =
+                    limits.values[vertex * length + c] =
                         EvaluateChannel(tree, place.domain, place.s, place.t, c, maxDepth);
                 }
                 limits.hasLimit[vertex] = 1;

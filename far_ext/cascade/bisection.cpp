@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
+
+#include "far_ext/rows/points.h"
 
 namespace limn::far_ext {
 
@@ -30,19 +33,14 @@ private:
     std::unordered_map<std::uint64_t, Index> _numbers;
 };
 
-int FindLongestEdge(Index const* face, std::span<double const> positions) {
+int FindLongestEdge(Index const* face, Points points) {
     int longest = 0;
     double best = -1.0;
     std::array<Index, 2> bestPair{};
     for (int k = 0; k < 3; ++k) {
         Index const a = face[k], b = face[(k + 1) % 3];
         std::array<Index, 2> const pair{std::min(a, b), std::max(a, b)};
-        double square = 0.0;
-        for (size_t c = 0; c < 3; ++c) {
-            double const d = positions[3 * static_cast<size_t>(pair[1]) + c] -
-                             positions[3 * static_cast<size_t>(pair[0]) + c];
-            square += d * d;
-        }
+        double const square = (points[pair[1]] - points[pair[0]]).squaredNorm();
         if (square < best || (square == best && bestPair < pair)) continue;
         longest = k;
         best = square;
@@ -101,11 +99,10 @@ Bisection::Bisection(Index numVertices, std::vector<Index> faces, std::span<doub
     _mesh.faces = std::move(faces);
     _mesh.creases = std::move(creases);
     _mesh.corners = std::move(corners);
-    for (Index face = 0; face < _mesh.GetNumFaces(); ++face) {
-        _refinementEdges.push_back(
-            FindLongestEdge(&_mesh.faces[3 * static_cast<size_t>(face)], positions));
-        _baseFaces.push_back(face);
-    }
+    for (size_t corner = 0; corner < _mesh.faces.size(); corner += 3)
+        _refinementEdges.push_back(FindLongestEdge(&_mesh.faces[corner], positions));
+    _baseFaces.resize(_refinementEdges.size());
+    std::iota(_baseFaces.begin(), _baseFaces.end(), 0);
 }
 
 void Bisection::SetFVarChannel(Index numValues, std::vector<Index> values) {
@@ -126,7 +123,7 @@ CascadeMesh const& Bisection::Refine() {
     }
     std::vector<Index> middles(edges.GetCount(), -1);
     for (size_t face = 0; face < _refinementEdges.size(); ++face) {
-        size_t const k = static_cast<size_t>(_refinementEdges[face]);
+        size_t const k = _refinementEdges[face];
         middles[edges.Get(coarse.faces[3 * face + k], coarse.faces[3 * face + (k + 1) % 3])] = 0;
     }
     _mesh = {};
@@ -154,7 +151,7 @@ CascadeMesh const& Bisection::Refine() {
                   _numFVarValues,
                   _fvarParents};
     for (size_t face = 0; face < _refinementEdges.size(); ++face) {
-        size_t const k = static_cast<size_t>(_refinementEdges[face]);
+        size_t const k = _refinementEdges[face];
         auto const corner = [&](size_t i) -> CutCorner {
             size_t const at = 3 * face + (k + i) % 3;
             return {coarse.faces[at], coarseValues.empty() ? 0 : coarseValues[at]};

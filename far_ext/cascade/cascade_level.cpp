@@ -66,10 +66,9 @@ bool OrderCorners(Index vertex, std::span<Corner> corners) {
 }
 
 Rings FindRings(CascadeMesh const& mesh, BoundaryRule rule) {
-    size_t const numVertices = static_cast<size_t>(mesh.numVertices),
-                 n = static_cast<size_t>(mesh.faceSize);
+    size_t const numVertices = mesh.numVertices, n = mesh.faceSize;
     LargeArray<int> begins(numVertices + 1, 0);
-    for (Index vertex : mesh.faces) ++begins[static_cast<size_t>(vertex) + 1];
+    for (Index vertex : mesh.faces) ++begins[vertex + 1];
     for (size_t i = 0; i < numVertices; ++i) begins[i + 1] += begins[i];
     LargeArray<Corner> corners(mesh.faces.size());
     LargeArray<int> fill(begins.begin(), begins.end() - 1);
@@ -78,7 +77,7 @@ Rings FindRings(CascadeMesh const& mesh, BoundaryRule rule) {
         Index previous = f[n - 1], own = f[0], next = f[1];
         for (size_t k = 0; k < n; ++k) {
             Index const opposite = f[k + 2 < n ? k + 2 : k + 2 - n];
-            corners[static_cast<size_t>(fill[own]++)] = {next, previous, opposite};
+            corners[fill[own]++] = {next, previous, opposite};
             previous = own;
             own = next;
             next = opposite;
@@ -89,8 +88,7 @@ Rings FindRings(CascadeMesh const& mesh, BoundaryRule rule) {
     rings.offsets.reserve(numVertices + 1);
     rings.neighbours.reserve(corners.size() * (n - 2) + numVertices / 8);
     for (size_t i = 0; i < numVertices; ++i) {
-        std::span<Corner> const own(corners.data() + begins[i],
-                                    static_cast<size_t>(begins[i + 1] - begins[i]));
+        std::span<Corner> const own(corners.data() + begins[i], begins[i + 1] - begins[i]);
         if (own.empty()) {
             rings.kinds[i] = RowKind::Fixed;
         } else {
@@ -117,13 +115,12 @@ Rings FindRings(CascadeMesh const& mesh, BoundaryRule rule) {
 /// creases meet, or meet a boundary, the vertex stays.
 /// \return per vertex its two neighbours along a crease
 std::vector<std::array<Index, 2>> SplitAtCreases(CascadeMesh const& mesh, Rings& rings) {
-    std::vector<std::array<Index, 2>> along(
-        mesh.creases.empty() ? 0 : static_cast<size_t>(mesh.numVertices), {-1, -1});
+    std::vector<std::array<Index, 2>> along(mesh.creases.empty() ? 0 : mesh.numVertices, {-1, -1});
     std::vector<int> counts(along.size(), 0);
     for (auto const& edge : mesh.creases) {
         for (size_t end = 0; end < 2; ++end) {
             int const count = counts[edge[end]]++;
-            if (count < 2) along[edge[end]][static_cast<size_t>(count)] = edge[1 - end];
+            if (count < 2) along[edge[end]][count] = edge[1 - end];
         }
     }
     for (size_t i = 0; i < counts.size(); ++i) {
@@ -177,7 +174,7 @@ CascadeLevel BuildCascadeLevel(CascadeMesh const& mesh, std::span<Index const> c
 
     LargeArray<Index> const rows = InvertOrder(level.vertices),
                             coarseRows = InvertOrder(coarseVertices);
-    level.offsets.reserve(static_cast<size_t>(level.numUnknowns) + 1);
+    level.offsets.reserve(size_t{1} + level.numUnknowns);
     level.offsets.push_back(0);
     level.neighbours.reserve(rings.neighbours.size());
     level.parentOffsets.reserve(order.size() + 1);
@@ -208,13 +205,13 @@ CascadeMesh MakeCascadeMesh(Far::TopologyRefiner const& refiner, int level) {
     CascadeMesh mesh;
     mesh.numVertices = fine.GetNumVertices();
     mesh.faceSize = refiner.GetSchemeType() == Sdc::SCHEME_LOOP ? 3 : 4;
-    mesh.faces.reserve(static_cast<size_t>(fine.GetNumFaceVertices()));
+    mesh.faces.reserve(fine.GetNumFaceVertices());
     for (Index face = 0; face < fine.GetNumFaces(); ++face) {
         auto const vertices = fine.GetFaceVertices(face);
         mesh.faces.insert(mesh.faces.end(), vertices.begin(), vertices.end());
     }
     enum : char { FromVertex, FromEdge, FromFace };
-    std::vector<std::pair<char, Index>> sources(static_cast<size_t>(mesh.numVertices));
+    std::vector<std::pair<char, Index>> sources(mesh.numVertices);
     for (Index i = 0; i < coarse.GetNumVertices(); ++i)
         sources[coarse.GetVertexChildVertex(i)] = {FromVertex, i};
     for (Index i = 0; i < coarse.GetNumEdges(); ++i)

@@ -9,8 +9,7 @@ namespace limn::far_ext {
 
 CascadeStencils::CascadeStencils(CascadeLevel const& level) {
     Index const numRows = level.GetNumRows();
-    size_t const numEntries = level.neighbours.size() + static_cast<size_t>(numRows) +
-                              static_cast<size_t>(level.numUnknowns);
+    size_t const numEntries = level.neighbours.size() + numRows + level.numUnknowns;
     if (numEntries > static_cast<size_t>(std::numeric_limits<int>::max()) ||
         numRows > std::numeric_limits<int>::max() / 2) {
         throw Error(ErrorCode::TooLarge,

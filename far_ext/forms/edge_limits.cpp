@@ -69,7 +69,7 @@ RegularStencil MakeRegularStencil(bool isLoop) {
     }
     // (1,4,1)/6 along times (1,4,1)/6 across; sides 1 and 2 of each face follow the four spokes.
     RegularStencil stencil{std::vector<double>(12, 0.0), std::vector<double>(12, 0.0)};
-    auto const side = [](int face, int m) { return static_cast<size_t>(4 + 2 * face + m - 1); };
+    auto const side = [](int face, int m) { return 4 + 2 * face + m - 1; };
     stencil.atStart[0] = 16.0 / 36.0;
     stencil.atStart[2] = -4.0 / 36.0;
     stencil.atStart[side(0, 2)] = -4.0 / 36.0;
@@ -127,8 +127,7 @@ std::vector<OrientedEdge> WalkNeighbourhood(Far::TopologyLevel const& level, Ind
         int ring;
     };
     std::vector<Stop> stops{{vertex, -1, 0}};
-    std::vector<char> isSeen(static_cast<size_t>(level.GetNumVertices()), 0),
-        isListed(static_cast<size_t>(level.GetNumEdges()), 0);
+    std::vector<char> isSeen(level.GetNumVertices(), 0), isListed(level.GetNumEdges(), 0);
     isSeen[vertex] = 1;
     std::vector<OrientedEdge> list;
     for (size_t at = 0; at < stops.size(); ++at) {
@@ -243,17 +242,15 @@ EdgeLimits::HalfLimit EdgeLimits::SolveHalf(Kind kind, int size, int spoke) cons
     // A: one step of S1 on the neighbourhood. What four refined rings read lies within four coarse
     // ones.
     Eigen::Index const count = static_cast<Eigen::Index>(unknowns.size());
-    std::vector<int> place(static_cast<size_t>(coarse.GetNumEdges()), -1);
+    std::vector<int> place(coarse.GetNumEdges(), -1);
     for (size_t i = 0; i < unknowns.size(); ++i) place[unknowns[i].edge] = static_cast<int>(i);
     SparseRows const s1 = BuildFormStencils(*refiner, kLevel + 1).s1;
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(count, count);
     for (Eigen::Index row = 0; row < count; ++row) {
-        auto const& image = images[static_cast<size_t>(row)];
+        auto const& image = images[row];
         for (int k = s1.offsets[image.edge]; k < s1.offsets[image.edge + 1]; ++k) {
             int const column = place[s1.indices[k]];
-            if (column >= 0)
-                A(row, column) +=
-                    image.sign * unknowns[static_cast<size_t>(column)].sign * s1.weights[k];
+            if (column >= 0) A(row, column) += image.sign * unknowns[column].sign * s1.weights[k];
         }
     }
     // l: the regular limit one step out along the spoke, from its end straight on. On the next
@@ -272,8 +269,7 @@ EdgeLimits::HalfLimit EdgeLimits::SolveHalf(Kind kind, int size, int spoke) cons
         for (size_t i = 0; i < weights.size(); ++i) {
             if (weights[i] == 0.0) continue;
             int const column = place[edges[i].edge];
-            regular[column] +=
-                weights[i] * edges[i].sign * unknowns[static_cast<size_t>(column)].sign;
+            regular[column] += weights[i] * edges[i].sign * unknowns[column].sign;
         }
     };
     if (kind == Kind::Dart && spoke == 0) {  // along the crease: a cubic curve's
@@ -297,9 +293,7 @@ EdgeLimits::HalfLimit EdgeLimits::SolveHalf(Kind kind, int size, int spoke) cons
         std::vector<double> weights;
         for (auto const& edge : edges) {
             int const column = place[edge.edge];
-            weights.push_back(column >= 0 ? rest[column] * edge.sign *
-                                                unknowns[static_cast<size_t>(column)].sign
-                                          : 0.0);
+            weights.push_back(column >= 0 ? rest[column] * edge.sign * unknowns[column].sign : 0.0);
             if (column >= 0) rest[column] = 0.0;  // an edge of both wheels counts once
         }
         return weights;

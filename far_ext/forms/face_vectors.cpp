@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 
 #include "far_ext/forms/form_operators.h"
+#include "far_ext/rows/points.h"
 
 namespace limn::far_ext {
 
@@ -43,12 +44,11 @@ Vectors MakeLeastSquares(Vectors const& corners, Eigen::Vector3d const& areaVect
 }  // namespace
 
 SparseRows BuildFaceVectors(Far::TopologyLevel const& level, std::span<double const> positions) {
+    Points const points(positions);
     SparseRows rows;
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         Vectors corners;
-        for (Index vertex : level.GetFaceVertices(face))
-            corners.emplace_back(
-                Eigen::Map<Eigen::Vector3d const>(&positions[3 * static_cast<size_t>(vertex)]));
+        for (Index vertex : level.GetFaceVertices(face)) corners.emplace_back(points[vertex]);
         Eigen::Vector3d areaVector = Eigen::Vector3d::Zero();
         for (size_t j = 2; j < corners.size(); ++j)
             areaVector += 0.5 * (corners[j - 1] - corners[0]).cross(corners[j] - corners[0]);

@@ -60,7 +60,7 @@ Wheel FindWheel(Far::TopologyRefiner const& refiner, Far::TopologyLevel const& l
         }
     }
 
-    wheel.edgeWeights.assign(static_cast<size_t>(numSpokes), 0.0);
+    wheel.edgeWeights.assign(numSpokes, 0.0);
     double const square = static_cast<double>(numSpokes) * numSpokes;
     auto const add = [&](Wheel::Rule& target, Rule rule, std::vector<float> const& sharpness,
                          double share) {
@@ -75,7 +75,7 @@ Wheel FindWheel(Far::TopologyRefiner const& refiner, Far::TopologyLevel const& l
         } else if (target.isCrease) {
             int ends[2];
             creasing.GetSharpEdgePairOfCrease(sharpness.data(), numSpokes, ends);
-            for (int end : ends) wheel.edgeWeights[static_cast<size_t>(end)] += share * 0.125;
+            for (int end : ends) wheel.edgeWeights[end] += share * 0.125;
         }
     };
     add(wheel.parent, parent, before, t);

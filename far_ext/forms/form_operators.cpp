@@ -28,7 +28,7 @@ struct Turning {
 
 Turning FindTurning(Far::TopologyLevel const& level) {
     Turning result;
-    std::vector<signed char> side(static_cast<size_t>(level.GetNumFaces()), 0);
+    std::vector<signed char> side(level.GetNumFaces(), 0);
     std::vector<Index> open;
     for (Index seed = 0; seed < level.GetNumFaces(); ++seed) {
         if (side[seed] != 0) continue;

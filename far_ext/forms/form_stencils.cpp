@@ -2,6 +2,7 @@
 #include "far_ext/forms/form_stencils.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <memory>
 
@@ -41,12 +42,12 @@ public:
           _fine(refiner.GetLevel(level)),
           _s1(_fine.GetNumEdges()),
           _s2(_fine.GetNumFaces()),
-          _seen(static_cast<size_t>(_coarse.GetNumEdges()), -1) {}
+          _seen(_coarse.GetNumEdges(), -1) {}
 
     FormStencils Build() {
         bool const isLoop = _scheme == Sdc::SCHEME_LOOP;
-        _mu.assign(isLoop ? 3 * static_cast<size_t>(_coarse.GetNumFaces()) : 0, 0.25);
-        _rowsOfVertex.assign(static_cast<size_t>(_coarse.GetNumVertices()), nullptr);
+        _mu.assign(isLoop ? _coarse.GetNumFaces() : 0, {0.25, 0.25, 0.25});
+        _rowsOfVertex.assign(_coarse.GetNumVertices(), nullptr);
         for (Index vertex = 0; vertex < _coarse.GetNumVertices(); ++vertex) {
             if (_coarse.GetVertexFaces(vertex).size() > 0) MeasureVertex(vertex);
         }
@@ -95,7 +96,7 @@ private:
         double const sign = from < to ? 1.0 : -1.0;
         _s1.Start(fineEdge);
         for (auto const& [local, weight] : row) {
-            OrientedEdge const& edge = _wheelEdges[static_cast<size_t>(local)];
+            OrientedEdge const& edge = _wheelEdges[local];
             _s1.Add(edge.edge, sign * edge.sign * weight);
         }
         if (isRepeated) _s1.MarkRepeated(fineEdge);
@@ -109,7 +110,7 @@ private:
     std::vector<std::unique_ptr<WheelRows>> _smoothRows;  // by valence
     std::map<std::vector<double>, WheelRows> _otherRows;  // by MakeKey
     std::vector<WheelRows const*> _rowsOfVertex;
-    std::vector<double> _mu;   // Loop: per corner of the faces
+    std::vector<std::array<double, 3>> _mu;  // Loop: per face and corner
     std::vector<Index> _seen;  // per edge: the vertex whose wheel it was last found in
 };
 
@@ -123,7 +124,7 @@ bool FormStencilBuilder::IsSmoothAndRegular(Index vertex) const {
 }
 
 WheelRows const& FormStencilBuilder::GetRows(Index vertex) {
-    size_t const k = static_cast<size_t>(_coarse.GetVertexFaces(vertex).size());
+    size_t const k = _coarse.GetVertexFaces(vertex).size();
     if (!IsSmoothAndRegular(vertex)) {
         Wheel const wheel = FindWheel(_refiner, _coarse, &_fine, vertex);
         auto const [found, isNew] = _otherRows.try_emplace(MakeKey(wheel));
@@ -150,13 +151,12 @@ void FormStencilBuilder::MeasureVertex(Index vertex) {
     WheelRows const& rows = GetRows(vertex);
     _rowsOfVertex[vertex] = &rows;
     for (int i = 0; i < edges.size(); ++i)
-        _s1.SetSize(GetFineSpoke(vertex, edges[i]), rows.even[static_cast<size_t>(i)].size());
+        _s1.SetSize(GetFineSpoke(vertex, edges[i]), rows.even[i].size());
     for (int i = 0; i < faces.size(); ++i) {
-        size_t const at = static_cast<size_t>(i);
-        _s2.SetSize(_coarse.GetFaceChildFaces(faces[i])[corners[i]], rows.children[at].size());
+        _s2.SetSize(_coarse.GetFaceChildFaces(faces[i])[corners[i]], rows.children[i].size());
         if (rows.odd.empty()) continue;
-        _mu[3 * static_cast<size_t>(faces[i]) + corners[i]] = rows.mu[at];
-        _s1.SetSize(_coarse.GetFaceChildEdges(faces[i])[corners[i]], rows.odd[at].size());
+        _mu[faces[i]][corners[i]] = rows.mu[i];
+        _s1.SetSize(_coarse.GetFaceChildEdges(faces[i])[corners[i]], rows.odd[i].size());
     }
 }
 
@@ -180,16 +180,15 @@ void FormStencilBuilder::WriteVertex(Index vertex, WheelRows const& rows) {
 
     Index const child = _coarse.GetVertexChildVertex(vertex);
     for (int i = 0; i < edges.size(); ++i) {
-        WriteEdgeRow(rows.even[static_cast<size_t>(i)], child, _coarse.GetEdgeChildVertex(edges[i]),
+        WriteEdgeRow(rows.even[i], child, _coarse.GetEdgeChildVertex(edges[i]),
                      GetFineSpoke(vertex, edges[i]), isRepeated);
     }
     for (int i = 0; i < faces.size(); ++i) {
         Index const fineFace = _coarse.GetFaceChildFaces(faces[i])[corners[i]];
         _s2.Start(fineFace);
-        for (auto const& [local, weight] : rows.children[static_cast<size_t>(i)])
-            _s2.Add(faces[local], weight);
+        for (auto const& [local, weight] : rows.children[i]) _s2.Add(faces[local], weight);
         if (rows.odd.empty()) continue;
-        WriteEdgeRow(rows.odd[static_cast<size_t>(i)], _coarse.GetEdgeChildVertex(edges[i]),
+        WriteEdgeRow(rows.odd[i], _coarse.GetEdgeChildVertex(edges[i]),
                      _coarse.GetEdgeChildVertex(edges[(i + 1) % edges.size()]),
                      _coarse.GetFaceChildEdges(faces[i])[corners[i]], isRepeated);
     }
@@ -210,7 +209,7 @@ void FormStencilBuilder::WriteCentralChild(Index face) {
     bool isRepeated = false;
     for (int j = 0; j < 3; ++j) {
         double const p = FindShare(edges[j]);
-        own -= 0.5 * p + _mu[3 * static_cast<size_t>(face) + static_cast<size_t>(j)];
+        own -= 0.5 * p + _mu[face][j];
         if (p == 0.0) continue;
         Index const neighbour = GetNeighbour(face, edges[j]);
         _s2.Add(neighbour, 0.5 * p);
@@ -224,9 +223,8 @@ void FormStencilBuilder::WriteCentralChild(Index face) {
 
 void FormStencilBuilder::MeasureEdgesToCentre(Index face) {
     auto const edges = _coarse.GetFaceEdges(face);
-    auto const count = [](int size) {
-        return static_cast<size_t>(size % 2 == 0 ? size - 2 : size - 1);
-    };  // the side across has weight 0
+    // The side across has weight 0.
+    auto const count = [](int size) -> size_t { return size % 2 == 0 ? size - 2 : size - 1; };
     for (int j = 0; j < edges.size(); ++j) {
         size_t size = count(edges.size());
         if (FindShare(edges[j]) != 0.0)

@@ -16,18 +16,17 @@ using Chain = std::vector<double>;  // over the wheel's faces, or over its edges
 /// Loop's beta puts the second eigenvalue at 1/2, that of a linear density, for up to 6 faces;
 /// beyond, the regular weights stay. Places that coincide where faces are few add up.
 std::vector<double> MakeCirculant(Sdc::SchemeType scheme, int count) {
-    std::vector<double> c(static_cast<size_t>(count), 0.0);
+    std::vector<double> c(count, 0.0);
     if (scheme == Sdc::SCHEME_CATMARK) {
         c[0] = (count + 5.0) / (4.0 * count);
         for (int m = 1; m < count; ++m)
-            c[static_cast<size_t>(m)] =
-                (3.0 + 2.0 * std::cos(2.0 * std::numbers::pi * m / count)) / (4.0 * count);
+            c[m] = (3.0 + 2.0 * std::cos(2.0 * std::numbers::pi * m / count)) / (4.0 * count);
         return c;
     }
     double const beta =
         count >= 6 ? 0.25 : 1.0 / (8.0 * (1.0 - std::cos(2.0 * std::numbers::pi / count)));
     auto const add = [&](int place, double weight) {
-        c[static_cast<size_t>(((place % count) + count) % count)] += weight;
+        c[((place % count) + count) % count] += weight;
     };
     add(0, 0.75 - beta);
     for (int sign : {-1, 1}) {
@@ -44,7 +43,7 @@ std::vector<int> FindCuts(Wheel const& wheel, Wheel::Rule const& rule) {
     int const last = wheel.GetNumSpokes() - 1;
     for (int i = 0; i <= last; ++i) {
         bool const isBorder = !wheel.isInterior && (i == 0 || i == last);
-        if (isBorder || rule.isSharp[static_cast<size_t>(i)]) cuts.push_back(i);
+        if (isBorder || rule.isSharp[i]) cuts.push_back(i);
     }
     if (cuts.size() < 2) cuts.clear();
     return cuts;
@@ -57,9 +56,8 @@ void AddShares(Sdc::SchemeType scheme, Wheel const& wheel, Wheel::Rule const& ru
     int const k = wheel.GetNumFaces();
     bool const isLoop = scheme == Sdc::SCHEME_LOOP;
     auto const add = [&](int row, int column, double rowMu, double weight) {
-        double const scale = isLoop ? rowMu : 1.0 / wheel.sizes[static_cast<size_t>(column)];
-        spread[static_cast<size_t>(row)][static_cast<size_t>(column)] +=
-            rule.share * scale * weight;
+        double const scale = isLoop ? rowMu : 1.0 / wheel.sizes[column];
+        spread[row][column] += rule.share * scale * weight;
     };
     std::vector<int> const cuts = FindCuts(wheel, rule);
     if (cuts.empty()) {
@@ -67,8 +65,8 @@ void AddShares(Sdc::SchemeType scheme, Wheel const& wheel, Wheel::Rule const& ru
         // Less than 1/4 at valence 3, where a swirl would never decay [Forms 6].
         double const rowMu = k == 3 ? 1.0 / 16.0 : 0.25;
         for (int i = 0; i < k; ++i) {
-            for (int j = 0; j < k; ++j) add(i, j, rowMu, c[static_cast<size_t>((j - i + k) % k)]);
-            mu[static_cast<size_t>(i)] += rule.share * rowMu;
+            for (int j = 0; j < k; ++j) add(i, j, rowMu, c[(j - i + k) % k]);
+            mu[i] += rule.share * rowMu;
         }
         return;
     }
@@ -84,10 +82,9 @@ void AddShares(Sdc::SchemeType scheme, Wheel const& wheel, Wheel::Rule const& ru
             int const row = (first + i) % k;
             for (int j = 0; j < size; ++j) {
                 add(row, (first + j) % k, rowMu,
-                    c[static_cast<size_t>((j - i + 2 * size) % (2 * size))] +
-                        c[static_cast<size_t>((i + j + 1) % (2 * size))]);
+                    c[(j - i + 2 * size) % (2 * size)] + c[(i + j + 1) % (2 * size)]);
             }
-            mu[static_cast<size_t>(row)] += rule.share * rowMu;
+            mu[row] += rule.share * rowMu;
         }
     }
 }
@@ -106,8 +103,7 @@ void Centre(Wheel const& wheel, std::vector<Chain>& flow) {
         }
         for (int i : spokes) {
             for (size_t j = 0; j < mean.size(); ++j)
-                mean[j] += rule->share * flow[static_cast<size_t>(i)][j] /
-                           static_cast<double>(spokes.size());
+                mean[j] += rule->share * flow[i][j] / static_cast<double>(spokes.size());
         }
     }
     for (Chain& x : flow) {
@@ -124,47 +120,44 @@ public:
             _firstOuterSides.push_back(next);
             next += size - 2;
         }
-        _weights.assign(static_cast<size_t>(next), 0.0);
+        _weights.assign(next, 0.0);
     }
 
     void AddSpoke(int spoke, double weight) {
         int const count = _wheel.GetNumSpokes();
-        _weights[static_cast<size_t>(((spoke % count) + count) % count)] += weight;
+        _weights[((spoke % count) + count) % count] += weight;
     }
 
     /// Side m of a face, counter-clockwise from the spoke before it.
     void AddSide(int face, int m, double weight) {
         int const k = _wheel.GetNumFaces();
         face = ((face % k) + k) % k;
-        int const size = _wheel.sizes[static_cast<size_t>(face)];
+        int const size = _wheel.sizes[face];
         if (m == 0)
             AddSpoke(face, weight);
         else if (m == size - 1)
             AddSpoke(face + 1, -weight);
         else
-            _weights[static_cast<size_t>(_firstOuterSides[static_cast<size_t>(face)] + m - 1)] +=
-                weight;
+            _weights[_firstOuterSides[face] + m - 1] += weight;
     }
 
     void AddBoundary(Chain const& faces) {
         for (int face = 0; face < _wheel.GetNumFaces(); ++face) {
-            double const weight = faces[static_cast<size_t>(face)];
-            for (int m = 0; weight != 0.0 && m < _wheel.sizes[static_cast<size_t>(face)]; ++m)
-                AddSide(face, m, weight);
+            double const weight = faces[face];
+            for (int m = 0; weight != 0.0 && m < _wheel.sizes[face]; ++m) AddSide(face, m, weight);
         }
     }
 
     /// F(e, f) of [Forms 4], from the middle of side `from` to the centroid.
     void AddPathFromMiddle(int face, int from, double weight) {
-        int const k = _wheel.GetNumFaces(),
-                  size = _wheel.sizes[static_cast<size_t>(((face % k) + k) % k)];
+        int const k = _wheel.GetNumFaces(), size = _wheel.sizes[((face % k) + k) % k];
         for (int j = 1; j < size; ++j)
             AddSide(face, (from + j) % size, weight * (0.5 - static_cast<double>(j) / size));
     }
 
     /// G(v, f): from the vertex to the centroid.
     void AddPathFromCorner(int face, double weight) {
-        int const size = _wheel.sizes[static_cast<size_t>(face)];
+        int const size = _wheel.sizes[face];
         for (int j = 0; j < size; ++j) AddSide(face, j, weight * (size - 1 - 2 * j) / (2.0 * size));
     }
 
@@ -188,12 +181,11 @@ private:
 /// those of s do, and regular rows come out as the convolution's [Forms 3.3].
 Chain MakeOddCurl(Wheel const& wheel, Chain const& mu, int i) {
     int const k = wheel.GetNumFaces(), spokes = wheel.GetNumSpokes();
-    double const before = wheel.faceShares[static_cast<size_t>(i)],
-                 after = wheel.faceShares[static_cast<size_t>((i + 1) % spokes)];
-    Chain y(static_cast<size_t>(k), 0.0);
-    y[static_cast<size_t>(i)] += mu[static_cast<size_t>(i)] - 0.25 * (before + after);
-    if (before != 0.0) y[static_cast<size_t>((i + k - 1) % k)] += 0.25 * before;
-    if (after != 0.0) y[static_cast<size_t>((i + 1) % k)] += 0.25 * after;
+    double const before = wheel.faceShares[i], after = wheel.faceShares[(i + 1) % spokes];
+    Chain y(k, 0.0);
+    y[i] += mu[i] - 0.25 * (before + after);
+    if (before != 0.0) y[(i + k - 1) % k] += 0.25 * before;
+    if (after != 0.0) y[(i + 1) % k] += 0.25 * after;
     return y;
 }
 
@@ -201,7 +193,7 @@ Chain MakeOddCurl(Wheel const& wheel, Chain const& mu, int i) {
 /// - p at w_i.
 void AddMiddle(Wheel const& wheel, int i, double sign, EdgeChain& chain) {
     int const spokes = wheel.GetNumSpokes(), spoke = i % spokes;
-    double const p = wheel.faceShares[static_cast<size_t>(spoke)];
+    double const p = wheel.faceShares[spoke];
     chain.AddSpoke(spoke, sign * (0.5 - p));
     if (p == 0.0) return;
     chain.AddSpoke(spoke - 1, sign * p);
@@ -213,8 +205,7 @@ void AddMiddle(Wheel const& wheel, int i, double sign, EdgeChain& chain) {
 EdgeChain MakeLoopEven(Wheel const& wheel, int i) {
     EdgeChain chain(wheel);
     AddMiddle(wheel, i, 1.0, chain);
-    for (int j = 0; j < wheel.GetNumSpokes(); ++j)
-        chain.AddSpoke(j, -wheel.edgeWeights[static_cast<size_t>(j)]);
+    for (int j = 0; j < wheel.GetNumSpokes(); ++j) chain.AddSpoke(j, -wheel.edgeWeights[j]);
     return chain;
 }
 
@@ -222,16 +213,15 @@ EdgeChain MakeLoopEven(Wheel const& wheel, int i) {
 /// vertex rule's ways to its neighbours and face points [Forms 4].
 EdgeChain MakeCatmarkEven(Wheel const& wheel, int i) {
     EdgeChain chain(wheel);
-    double const q = wheel.faceShares[static_cast<size_t>(i)];
+    double const q = wheel.faceShares[i];
     chain.AddSpoke(i, 0.5);
     if (q != 0.0) {
         int const k = wheel.GetNumFaces();
         int const before = (i + k - 1) % k;
         chain.AddPathFromMiddle(i, 0, q);
-        chain.AddPathFromMiddle(before, wheel.sizes[static_cast<size_t>(before)] - 1, q);
+        chain.AddPathFromMiddle(before, wheel.sizes[before] - 1, q);
     }
-    for (int j = 0; j < wheel.GetNumSpokes(); ++j)
-        chain.AddSpoke(j, -wheel.edgeWeights[static_cast<size_t>(j)]);
+    for (int j = 0; j < wheel.GetNumSpokes(); ++j) chain.AddSpoke(j, -wheel.edgeWeights[j]);
     for (int j = 0; wheel.faceWeight != 0.0 && j < wheel.GetNumFaces(); ++j)
         chain.AddPathFromCorner(j, -wheel.faceWeight);
     return chain;
@@ -246,7 +236,7 @@ double GetLoopWeight(int k) {
 
 Wheel MakeSmoothWheel(Sdc::SchemeType scheme, int k) {
     bool const isLoop = scheme == Sdc::SCHEME_LOOP;
-    size_t const count = static_cast<size_t>(k);
+    size_t const count = k;
     Wheel wheel;
     wheel.sizes.assign(count, isLoop ? 3 : 4);
     wheel.faceShares.assign(count, isLoop ? 0.125 : 0.25);
@@ -260,7 +250,7 @@ Wheel MakeSmoothWheel(Sdc::SchemeType scheme, int k) {
 WheelRows MakeWheelRows(Sdc::SchemeType scheme, Wheel const& wheel) {
     bool const isLoop = scheme == Sdc::SCHEME_LOOP;
     int const numFaces = wheel.GetNumFaces(), numSpokes = wheel.GetNumSpokes();
-    size_t const k = static_cast<size_t>(numFaces);
+    size_t const k = numFaces;
     WheelRows rows;
     rows.mu.assign(k, 0.0);
     rows.share.assign(k, Chain(k, 0.0));
@@ -272,12 +262,12 @@ WheelRows MakeWheelRows(Sdc::SchemeType scheme, Wheel const& wheel) {
     std::vector<Chain> curls;
     rows.flow.assign(1, Chain(k, 0.0));
     for (int i = 0; i < numFaces; ++i) {
-        Chain const& s = rows.share[static_cast<size_t>(i)];
+        Chain const& s = rows.share[i];
         Chain y(k, 0.0);
         if (isLoop)
             y = MakeOddCurl(wheel, rows.mu, i);
         else
-            y[static_cast<size_t>(i)] = 1.0 / wheel.sizes[static_cast<size_t>(i)];
+            y[i] = 1.0 / wheel.sizes[i];
         Chain next = rows.flow.back();
         for (size_t j = 0; j < k; ++j) next[j] += y[j] - s[j];
         rows.children.push_back(EdgeChain::Compress(s));
@@ -291,14 +281,14 @@ WheelRows MakeWheelRows(Sdc::SchemeType scheme, Wheel const& wheel) {
 
     for (int i = 0; i < numSpokes; ++i) {
         EdgeChain chain = isLoop ? MakeLoopEven(wheel, i) : MakeCatmarkEven(wheel, i);
-        chain.AddBoundary(rows.flow[static_cast<size_t>(i)]);
+        chain.AddBoundary(rows.flow[i]);
         rows.even.push_back(chain.Get());
     }
     for (int i = 0; isLoop && i < numFaces; ++i) {
         EdgeChain chain(wheel);
         AddMiddle(wheel, i + 1, 1.0, chain);
         AddMiddle(wheel, i, -1.0, chain);
-        chain.AddBoundary(curls[static_cast<size_t>(i)]);
+        chain.AddBoundary(curls[i]);
         rows.odd.push_back(chain.Get());
     }
     return rows;

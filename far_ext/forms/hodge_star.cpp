@@ -7,24 +7,23 @@
 #include <fmt/format.h>
 
 #include "far_ext/error.h"
+#include "far_ext/rows/points.h"
 
 namespace limn::far_ext {
 
 HodgeStars FindHodgeStars(Far::TopologyLevel const& level, std::span<double const> positions) {
-    auto const at = [&](Index vertex) {
-        return Eigen::Map<Eigen::Vector3d const>(&positions[3 * static_cast<size_t>(vertex)]);
-    };
+    Points const points(positions);
     HodgeStars stars;
-    stars.edge.assign(static_cast<size_t>(level.GetNumEdges()), 0.0);
+    stars.edge.assign(level.GetNumEdges(), 0.0);
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         auto const vertices = level.GetFaceVertices(face);
         auto const edges = level.GetFaceEdges(face);
         int const size = vertices.size();
         Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-        for (Index vertex : vertices) centre += at(vertex) / size;
+        for (Index vertex : vertices) centre += points[vertex] / size;
         double area = 0.0, longest = 0.0;
         for (int j = 0; j < size; ++j) {
-            Eigen::Vector3d const a = at(vertices[j]), b = at(vertices[(j + 1) % size]);
+            Eigen::Vector3d const a = points[vertices[j]], b = points[vertices[(j + 1) % size]];
             double const length = (b - a).norm();
             if (!(length > 0.0)) {
                 throw Error(
@@ -35,8 +34,8 @@ HodgeStars FindHodgeStars(Far::TopologyLevel const& level, std::span<double cons
             area += 0.5 * (a - centre).cross(b - centre).norm();
             longest = std::max(longest, length);
             if (size == 3) {
-                Eigen::Vector3d const p = a - at(vertices[(j + 2) % 3]),
-                                      q = b - at(vertices[(j + 2) % 3]);
+                Eigen::Vector3d const p = a - points[vertices[(j + 2) % 3]],
+                                      q = b - points[vertices[(j + 2) % 3]];
                 stars.edge[edges[j]] += 0.5 * p.dot(q) / std::max(p.cross(q).norm(), 1e-300);
             } else {
                 stars.edge[edges[j]] += (0.5 * (a + b) - centre).norm() / length;

@@ -13,7 +13,7 @@ LimitMatrix LimitMatrix::Build(Far::TopologyRefiner const& refiner, int level,
                                LimitOptions const& options) {
     LimitRowBuilder builder(refiner, level, options);
     Index const numVertices = builder.GetNumVertices();
-    size_t const size = static_cast<size_t>(numVertices);
+    size_t const size = numVertices;
 
     LimitMatrix matrix;
     auto& [offsets, indices, weights] = matrix._rows;
@@ -29,7 +29,7 @@ LimitMatrix LimitMatrix::Build(Far::TopologyRefiner const& refiner, int level,
         int const start = offsets.back();
         auto const add = [&](Index column, double weight) {
             if (place[column] >= start) {
-                weights[static_cast<size_t>(place[column])] += weight;
+                weights[place[column]] += weight;
                 return;
             }
             place[column] = static_cast<int>(indices.size());

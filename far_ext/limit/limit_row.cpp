@@ -111,7 +111,7 @@ void LimitRowBuilder::BuildCatmark(Index vertex, LimitRow& row) const {
     row.isEvenCubic = row.numEdges == 3 && areEven && a == 0.0;
 
     double faceSum = 0.0;  // sum of g/d
-    if (!isUniform) row.weights.assign(static_cast<size_t>(row.numEdges), q);
+    if (!isUniform) row.weights.assign(row.numEdges, q);
     for (int i = 0; i < faces.size(); ++i) {
         auto const vertices = _level.GetFaceVertices(faces[i]);
         int const size = vertices.size();
@@ -125,7 +125,7 @@ void LimitRowBuilder::BuildCatmark(Index vertex, LimitRow& row) const {
             if (isEdge) {
                 auto const edge =
                     std::find(row.indices.begin(), row.indices.begin() + row.numEdges, at);
-                row.weights[static_cast<size_t>(edge - row.indices.begin())] += g / size;
+                row.weights[edge - row.indices.begin()] += g / size;
                 continue;
             }
             row.indices.push_back(at);
@@ -143,7 +143,7 @@ void LimitRowBuilder::BuildCatmark(Index vertex, LimitRow& row) const {
 void LimitRowBuilder::BuildLoop(Index vertex, LimitRow& row) {
     auto const faces = _level.GetVertexFaces(vertex);
     auto const corners = _level.GetVertexFaceLocalIndices(vertex);
-    size_t const n = static_cast<size_t>(faces.size());
+    size_t const n = faces.size();
     if (_loopChi.size() <= n) _loopChi.resize(n + 1, 0.0);
     double& chi = _loopChi[n];
     if (chi == 0.0) {

@@ -53,7 +53,7 @@ FaceLattice const& LatticeCache::Get(int size, int depth) {
 }
 
 FaceLattice LatticeCache::Build(int size, int depth) {
-    std::vector<Index> corners(static_cast<size_t>(size));
+    std::vector<Index> corners(size);
     for (int i = 0; i < size; ++i) corners[i] = i;
     Far::TopologyDescriptor face;
     face.numVertices = size;
@@ -67,7 +67,7 @@ FaceLattice LatticeCache::Build(int size, int depth) {
 
     FaceLattice lattice;
     Level const fine = refiner->GetLevel(depth);
-    lattice.places.assign(static_cast<size_t>(fine.GetNumVertices()), {-1, -1});
+    lattice.places.assign(fine.GetNumVertices(), {-1, -1});
     for (Index f = 0; f < fine.GetNumFaces(); ++f) {
         auto const vertices = fine.GetFaceVertices(f);
         for (int i = 0; i < vertices.size(); ++i) {

@@ -23,7 +23,7 @@ size_t FaceRing::Hash() const {
     for (Index value : valueIndices) add(static_cast<uint64_t>(value));
     for (Edge const& edge : edges) add(std::bit_cast<uint32_t>(edge.sharpness));
     for (Corner const& corner : corners) add(std::bit_cast<uint32_t>(corner.sharpness));
-    return static_cast<size_t>(hash ^ (hash >> 32));
+    return hash ^ (hash >> 32);
 }
 
 FaceRingGatherer::FaceRingGatherer(Far::TopologyLevel const& level, int channel, Starts starts)
@@ -90,7 +90,7 @@ void FaceRingGatherer::Gather(Index face, FaceRing& ring, std::vector<Index>& po
     for (auto* list : {&ring.faceVertices, &ring.faceEdges, &ring.valueIndices}) list->clear();
     ring.faceSizes.clear();
     ring.edges.clear();
-    ring.corners.resize(static_cast<size_t>(_level.GetFaceVertices(face).size()));
+    ring.corners.resize(_level.GetFaceVertices(face).size());
     NumberFaces(face);
     for (Index inRing : _faces.GetMembers()) {
         auto const vertices = _level.GetFaceVertices(inRing);
@@ -140,7 +140,7 @@ struct RingTopology {
 
     explicit RingTopology(FaceRing const& r) : ring(r) {
         edgeFaces.resize(ring.edges.size());
-        vertexFaces.resize(static_cast<size_t>(ring.numVertices));
+        vertexFaces.resize(ring.numVertices);
         vertexEdges.resize(vertexFaces.size());
         // The faces round a vertex of the rim are not all here; its rules are of no consequence.
         isNonManifold.assign(vertexFaces.size(), 1);

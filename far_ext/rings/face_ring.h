@@ -75,7 +75,7 @@ private:
     /// Numbers what it is given by first appearance until it is reset.
     class Numbering {
     public:
-        void Resize(int count) { _local.assign(static_cast<size_t>(count), -1); }
+        void Resize(int count) { _local.assign(count, -1); }
         Index Add(Index index) {
             if (_local[index] < 0) {
                 _local[index] = static_cast<Index>(_members.size());

@@ -51,10 +51,10 @@ std::vector<WeightRow> RefineIdentity(FaceRing const& ring, Far::TopologyRefiner
     auto const coarseRows = WeightRow::Identity(ring.numPoints);
     std::vector<WeightRow> rows;
     if (ring.IsFaceVarying()) {
-        rows.resize(static_cast<size_t>(fine.GetNumFVarValues(0)));
+        rows.resize(fine.GetNumFVarValues(0));
         primvars.InterpolateFaceVarying(1, coarseRows, rows, 0);
     } else {
-        rows.resize(static_cast<size_t>(fine.GetNumVertices()));
+        rows.resize(fine.GetNumVertices());
         isVarying ? primvars.InterpolateVarying(1, coarseRows, rows)
                   : primvars.Interpolate(1, coarseRows, rows);
     }
@@ -388,7 +388,7 @@ SubDomain GetChildDomain(Level const& coarse, Level const& fine, Index childFace
 /// Points of the faces that share a point, not only a vertex, with the face.
 std::vector<Index> FindSupport(FaceRing const& ring) {
     auto const& points = ring.IsFaceVarying() ? ring.valueIndices : ring.faceVertices;
-    std::vector<char> isOwn(static_cast<size_t>(ring.numPoints), 0), isSupport(isOwn);
+    std::vector<char> isOwn(ring.numPoints, 0), isSupport(isOwn);
     for (int i = 0; i < ring.faceSizes[0]; ++i) isOwn[points[i]] = 1;
     auto first = points.begin();
     for (int size : ring.faceSizes) {

@@ -23,8 +23,7 @@ RingWeights::Node& RingWeights::Find(FaceRing const& ring) {
 }
 
 DenseRows const& RingWeights::Get(Node& node, int depth) {
-    if (static_cast<int>(node.rows.size()) <= depth)
-        node.rows.resize(static_cast<size_t>(depth) + 1);
+    if (static_cast<int>(node.rows.size()) <= depth) node.rows.resize(depth + 1);
     if (!node.rows[depth]) {
         node.rows[depth] = std::make_unique<DenseRows>(depth == 0 ? MakeCorners(*node.ring)
                                                                   : Compose(node, depth));

@@ -13,17 +13,15 @@ namespace limn::far_ext {
 /// Rows of known sizes, filled in any order.
 class RowWriter {
 public:
-    explicit RowWriter(Index numRows) { _rows.offsets.assign(static_cast<size_t>(numRows) + 1, 0); }
+    explicit RowWriter(Index numRows) { _rows.offsets.assign(size_t{1} + numRows, 0); }
 
-    void SetSize(Index row, size_t size) {
-        _rows.offsets[static_cast<size_t>(row) + 1] = static_cast<int>(size);
-    }
+    void SetSize(Index row, size_t size) { _rows.offsets[row + 1] = static_cast<int>(size); }
 
     /// \throws Error  TooLarge: more than 2^31 entries
     void Allocate() {
         size_t total = 0;
         for (size_t row = 1; row < _rows.offsets.size(); ++row) {
-            total += static_cast<size_t>(_rows.offsets[row]);
+            total += _rows.offsets[row];
             if (total > static_cast<size_t>(std::numeric_limits<int>::max())) {
                 throw Error(ErrorCode::TooLarge,
                             "a table of stencils passes 2^31 entries; refine fewer levels");
@@ -34,7 +32,7 @@ public:
         _rows.weights.resize(total);
     }
 
-    void Start(Index row) { _at = static_cast<size_t>(_rows.offsets[row]); }
+    void Start(Index row) { _at = _rows.offsets[row]; }
     void Add(Index column, double weight) {
         _rows.indices[_at] = column;
         _rows.weights[_at++] = weight;
@@ -55,7 +53,7 @@ private:
         for (Index row : _repeated) isRepeated[row] = 1;
         size_t to = 0, next = 0;
         for (int row = 0; row < _rows.GetNumRows(); ++row) {
-            size_t const first = to, end = static_cast<size_t>(_rows.offsets[row + 1]);
+            size_t const first = to, end = _rows.offsets[row + 1];
             for (size_t k = next; k < end; ++k) {
                 size_t same = first;
                 while (isRepeated[row] && same < to && _rows.indices[same] != _rows.indices[k])

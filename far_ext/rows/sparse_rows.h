@@ -33,7 +33,7 @@ public:
     std::vector<std::pair<Index, double>> const& GetEntries() const { return _entries; }
 
     static std::vector<WeightRow> Identity(Index count) {
-        std::vector<WeightRow> rows(static_cast<size_t>(count));
+        std::vector<WeightRow> rows(count);
         for (Index i = 0; i < count; ++i) rows[i].Add(i, 1.0);
         return rows;
     }
@@ -73,7 +73,7 @@ struct SparseRows {
 
     /// The same for one number per point.
     std::vector<double> Apply(std::vector<double> const& src) const {
-        std::vector<double> dst(static_cast<size_t>(GetNumRows()));
+        std::vector<double> dst(GetNumRows());
         ApplyTo<1>(src.data(), dst.data(), 1);
         return dst;
     }

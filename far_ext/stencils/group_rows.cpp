@@ -14,7 +14,7 @@ namespace {
 std::vector<std::vector<Index>> FindRowsWithSameControls(StencilRowsView const& rows,
                                                          size_t leastRows,
                                                          std::vector<Index>& others) {
-    std::vector<std::pair<uint64_t, Index>> keys(static_cast<size_t>(rows.numRows));
+    std::vector<std::pair<uint64_t, Index>> keys(rows.numRows);
     for (Index row = 0; row < rows.numRows; ++row) {
         uint64_t hash =
             static_cast<uint64_t>(rows.sizes[row]);  // whatever the order of the controls
@@ -42,7 +42,7 @@ StencilGroups GroupRows(StencilRowsView const& rows) {
     constexpr size_t kLeastRows =
         6;  // below, filling up a panel of 16 costs more than the block saves
     StencilGroupsBuilder builder(rows.numRows, rows.numControls, rows.numSets);
-    std::vector<int> columnOf(static_cast<size_t>(rows.numControls), -1);
+    std::vector<int> columnOf(rows.numControls, -1);
     std::vector<Index> controls;
     std::vector<float> weights;
 

@@ -59,7 +59,7 @@ struct RecordedRow {
     /// Rows blend into later ones: an edge's takes in those of its faces.
     void AddWithWeight(RecordedRow const& other, Real weight) {
         for (int k = 0; k < other.size; ++k) {
-            auto const [control, own] = (*entries)[other.begin + static_cast<size_t>(k)];
+            auto const [control, own] = (*entries)[other.begin + k];
             AddWithWeight(control, weight * own);
         }
     }
@@ -75,8 +75,8 @@ StencilGroups RecordOneLevel(Far::TopologyRefiner const& refiner,
                              RefinedStencilOptions const& options) {
     Index const numRows = CountPoints(refiner.GetLevel(1), options);
     std::vector<std::pair<Index, Real>> entries;
-    entries.reserve(static_cast<size_t>(numRows) * 8);
-    std::vector<RecordedRow<Real>> rows(static_cast<size_t>(numRows), RecordedRow<Real>{&entries});
+    entries.reserve(size_t{8} * numRows);
+    std::vector<RecordedRow<Real>> rows(numRows, RecordedRow<Real>{&entries});
     Far::PrimvarRefinerReal<Real> const primvars(refiner);
     ControlNumbers const controls;
     switch (options.mode) {
@@ -97,7 +97,7 @@ StencilGroups RecordOneLevel(Far::TopologyRefiner const& refiner,
         indices.clear();
         weights.clear();
         for (int k = 0; k < rows[row].size; ++k) {
-            auto const& [control, weight] = entries[rows[row].begin + static_cast<size_t>(k)];
+            auto const& [control, weight] = entries[rows[row].begin + k];
             indices.push_back(control);
             weights.push_back(static_cast<float>(weight));
         }
@@ -177,7 +177,7 @@ public:
           _weights(refiner, options.mode == Mode::Varying, _lattices),
           _gatherer(_base, options.mode == Mode::FaceVarying ? options.fvarChannel : -1,
                     FaceRingGatherer::Starts::Canonical),
-          _isDone(static_cast<size_t>(CountPoints(_fine, options)), 0),
+          _isDone(CountPoints(_fine, options), 0),
           _builder(CountPoints(_fine, options), CountPoints(_base, options), 1) {}
 
     /// None if so many rings differ that Far's table costs less.

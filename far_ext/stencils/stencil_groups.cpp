@@ -44,7 +44,7 @@ StencilRows StencilGroups::Expand() const {
         int group = -1, run = -1;
         int row = 0;  // within the group or run
     };
-    std::vector<Place> places(static_cast<size_t>(numRows));
+    std::vector<Place> places(numRows);
     for (size_t g = 0; g < groups.size(); ++g) {
         Shape const shape = shapes[groups[g].shape];
         int inGroup = 0;

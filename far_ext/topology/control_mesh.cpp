@@ -28,7 +28,7 @@ namespace {
 void ValidateFaces(ControlMesh const& mesh) {
     constexpr int kValenceLimit = OpenSubdiv::Vtr::VALENCE_LIMIT;
     // Every face contributes one face and at most two edges to each of its vertices.
-    std::vector<int> valences(static_cast<size_t>(mesh.numVertices), 0);
+    std::vector<int> valences(mesh.numVertices, 0);
     size_t corner = 0;
     for (Index face = 0; face < mesh.GetNumFaces(); ++face) {
         int const size = mesh.faceSizes[face];

@@ -7,7 +7,7 @@
 namespace limn::far_ext {
 
 FaceComponents FaceComponents::Find(Far::TopologyLevel const& level) {
-    std::vector<Index> parent(static_cast<size_t>(level.GetNumVertices()));
+    std::vector<Index> parent(level.GetNumVertices());
     std::iota(parent.begin(), parent.end(), 0);
     auto const root = [&](Index v) {
         while (parent[v] != v) v = parent[v] = parent[parent[v]];
@@ -29,7 +29,7 @@ FaceComponents FaceComponents::Find(Far::TopologyLevel const& level) {
 }
 
 std::vector<int> FaceComponents::FindEulerCharacteristics(Far::TopologyLevel const& level) const {
-    std::vector<int> euler(static_cast<size_t>(count), 0);
+    std::vector<int> euler(count, 0);
     for (int component : ofFace) ++euler[component];
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
         if (level.GetVertexFaces(vertex).size()) ++euler[ofFace[level.GetVertexFaces(vertex)[0]]];

@@ -41,8 +41,8 @@ ControlMesh MakeRefinedCage(Far::TopologyRefiner const& refiner, ControlMesh con
     cage.scheme = base.scheme;
     cage.options = base.options;
     cage.numVertices = last.GetNumVertices();
-    cage.faceSizes.reserve(static_cast<size_t>(last.GetNumFaces()));
-    cage.faceVertices.reserve(static_cast<size_t>(last.GetNumFaceVertices()));
+    cage.faceSizes.reserve(last.GetNumFaces());
+    cage.faceVertices.reserve(last.GetNumFaceVertices());
     for (Index face = 0; face < last.GetNumFaces(); ++face) {
         auto const vertices = last.GetFaceVertices(face);
         cage.faceSizes.push_back(vertices.size());
@@ -61,7 +61,7 @@ ControlMesh MakeRefinedCage(Far::TopologyRefiner const& refiner, ControlMesh con
 }
 
 std::vector<Index> FindBaseFaces(Far::TopologyRefiner const& refiner, int level) {
-    std::vector<Index> base(static_cast<size_t>(refiner.GetLevel(level).GetNumFaces()));
+    std::vector<Index> base(refiner.GetLevel(level).GetNumFaces());
     for (Index face = 0; face < static_cast<Index>(base.size()); ++face) {
         Index at = face;
         for (int k = level; k > 0; --k) at = refiner.GetLevel(k).GetFaceParentFace(at);
