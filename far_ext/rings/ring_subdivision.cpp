@@ -359,30 +359,14 @@ private:
     std::vector<int> _firstCorner;
 };
 
-/// Where a child lies in its parent, read off where its corners come from.
-SubDomain GetChildDomain(Level const& coarse, Level const& fine, Index childFace) {
-    auto const corners = coarse.GetFaceVertices(0);
-    auto const edges = coarse.GetFaceEdges(0);
-    bool const isQuad = corners.size() == 4;
-    auto const cornerPlace = [&](int i) -> std::array<double, 2> {
-        constexpr double kQuad[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-        constexpr double kTriangle[3][2] = {{0, 0}, {1, 0}, {0, 1}};
-        double const* const place = isQuad ? kQuad[i % 4] : kTriangle[i % 3];
-        return {place[0], place[1]};
-    };
-    auto const place = [&](Index childVertex) -> std::array<double, 2> {
-        for (int i = 0; i < corners.size(); ++i) {
-            auto const a = cornerPlace(i), b = cornerPlace(i + 1);
-            if (coarse.GetVertexChildVertex(corners[i]) == childVertex) return a;
-            if (coarse.GetEdgeChildVertex(edges[i]) == childVertex) {
-                return {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2};
-            }
-        }
-        return {0.5, 0.5};  // the face point
-    };
-    auto const vertices = fine.GetFaceVertices(childFace);
-    auto const origin = place(vertices[0]), next = place(vertices[1]);
-    return {origin, next[0] - origin[0]};
+/// Where a child lies in its parent: one is at each corner, of a triangle another in the middle,
+/// turned round. By its number: vertices say nothing where a face repeats one.
+SubDomain GetChildDomain(bool isTriangle, size_t child) {
+    constexpr SubDomain kQuad[] = {
+        {{0.0, 0.0}, 0.5}, {{0.5, 0.0}, 0.5}, {{0.5, 0.5}, 0.5}, {{0.0, 0.5}, 0.5}};
+    constexpr SubDomain kTriangle[] = {
+        {{0.0, 0.0}, 0.5}, {{0.5, 0.0}, 0.5}, {{0.0, 0.5}, 0.5}, {{0.5, 0.5}, -0.5}};
+    return isTriangle ? kTriangle[child] : kQuad[child];
 }
 
 /// Points of the faces that share a point, not only a vertex, with the face.
@@ -421,13 +405,14 @@ RingSubdivision RingSubdivision::Build(FaceRing const& ring, Sdc::SchemeType sch
     using Starts = FaceRingGatherer::Starts;
     FaceRingGatherer gatherer(fine, ring.IsFaceVarying() ? 0 : -1,
                               use == Use::Limit ? Starts::AsInLevel : Starts::Canonical);
-    bool const isSplitInSubFaces = scheme != Sdc::SCHEME_LOOP && ring.faceSizes[0] != 4;
+    bool const isLoop = scheme == Sdc::SCHEME_LOOP;
+    bool const isSplitInSubFaces = !isLoop && ring.faceSizes[0] != 4;
     std::vector<Index> points;
     for (Index childFace : coarse.GetFaceChildFaces(0)) {
         Child child;
         gatherer.Gather(childFace, child.ring, points);
         for (Index point : points) child.weights.AddRow(fineRows[point]);
-        if (!isSplitInSubFaces) child.domain = GetChildDomain(coarse, fine, childFace);
+        if (!isSplitInSubFaces) child.domain = GetChildDomain(isLoop, result.children.size());
         result.children.push_back(std::move(child));
     }
     return result;

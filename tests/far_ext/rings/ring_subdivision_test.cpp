@@ -116,19 +116,24 @@ TEST(RingSubdivision, ExtraordinaryCornersBecomeStationary) {
     }
 }
 
-// Children tile their parent: the middle child of a triangle is turned round.
+// Children tile their parent: the middle child of a triangle is turned round. Also where two
+// corners are one vertex, as at a pinched end.
 TEST(RingSubdivision, DomainsOfChildrenTileTheParent) {
-    engine::Scene const quad = test::MakeFan(5, Sdc::SCHEME_CATMARK, 0.1, 0.0);
-    engine::Scene const triangle = test::MakeFan(5, Sdc::SCHEME_LOOP, 0.1, 0.0);
-    for (engine::Scene const* scene : {&quad, &triangle}) {
-        auto const refiner = far_ext::CreateRefiner(scene->cage);
+    std::vector<double> const positions{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    engine::Scene const scenes[] = {
+        test::MakeFan(5, Sdc::SCHEME_CATMARK, 0.1, 0.0),
+        test::MakeFan(5, Sdc::SCHEME_LOOP, 0.1, 0.0),
+        test::MakeScene(positions, {{0, 0, 1, 2}, {0, 2, 3, 3}}),
+        test::MakeScene(positions, {{0, 1, 0}, {0, 1, 2}}, Sdc::SCHEME_LOOP)};
+    for (engine::Scene const& scene : scenes) {
+        auto const refiner = far_ext::CreateRefiner(scene.cage);
         FaceRingGatherer gatherer(refiner->GetLevel(0), -1);
         FaceRing ring;
         std::vector<Index> points;
         gatherer.Gather(0, ring, points);
-        auto const step = RingSubdivision::Build(ring, scene->cage.scheme, scene->cage.options);
+        auto const step = RingSubdivision::Build(ring, scene.cage.scheme, scene.cage.options);
         ASSERT_EQ(step.children.size(), 4u);
-        bool const isLoop = scene->cage.scheme == Sdc::SCHEME_LOOP;
+        bool const isLoop = scene.cage.scheme == Sdc::SCHEME_LOOP;
         double const expected[4][3] = {{0, 0, 0.5},
                                        {0.5, 0, 0.5},
                                        {isLoop ? 0.0 : 0.5, 0.5, 0.5},
