@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <limn/eval/simd_evaluator.h>
+#include <limn/eval/surface_sample.h>
+#include <limn/far_ext/refined_stencils.h>
+#include <limn/far_ext/refiner.h>
+
+// Programs written for 0.1 find what they use where it was.
+using limn::eval::EvaluateSample;
+using limn::eval::SimdEvaluator;
+using limn::far_ext::BuildRefinedStencils;
+using limn::far_ext::CreateRefiner;
