@@ -339,7 +339,7 @@ void StripBaker::Supersample(Worker& worker, TileGrid const& grid, FaceBins::Blo
     worker.averages.Finish(n * n, strip);
 }
 
-std::string StripBaker::NamePlace(eval::SurfaceSampler::Place const& place) const {
+std::string StripBaker::NamePlace(eval::SurfacePlace const& place) const {
     auto const vertices = _model.GetLevel().GetFaceVertices(place.face);
     int corner;
     if (_surface.GetNumDomains(place.face) > 1) {

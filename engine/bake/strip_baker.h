@@ -65,7 +65,7 @@ private:
     void FinishBlock(Strip& strip, int firstColumn, int numColumns);
     void Supersample(Worker& worker, TileGrid const& grid, FaceBins::Blocks const& blocks,
                      Strip& strip);
-    std::string NamePlace(eval::SurfaceSampler::Place const& place) const;
+    std::string NamePlace(eval::SurfacePlace const& place) const;
 
     Model const& _model;
     BakeOptions const& _options;

@@ -106,7 +106,7 @@ std::vector<Sums> Surveyor::SurveyLimit() const {
             for (Index face = faces.begin(); face < faces.end(); ++face) {
                 if (!surface.HasLimit(face)) continue;
                 tree.Bind(face);
-                points.ForEach(face, [&](eval::FacePlace const& place, double weight) {
+                points.ForEach(face, [&](eval::SurfacePlace const& place, double weight) {
                     auto const x =
                         eval::EvaluateSample(tree, place.domain, place.s, place.t, _orientation);
                     double const area = weight * x.tangentS.cross(x.tangentT).norm();

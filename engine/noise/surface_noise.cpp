@@ -112,8 +112,9 @@ void SurfaceNoise::Sampler::Evaluate(Index face, int domain, std::span<double co
     for (auto const& place : _places) {
         if (place.at.face != bound) _tree.Bind(place.at.face);
         bound = place.at.face;
-        values[place.index] =
-            eval::EvaluateChannel(_tree, place.at.domain, place.at.s, place.at.t, 0);
+        auto const piece = _tree.LocateChecked(place.at.domain, place.at.s, place.at.t,
+                                               eval::FaceTree::kLimitDepth);
+        values[place.index] = eval::EvaluateDerivatives(_tree, piece, 0)[0];
     }
 }
 

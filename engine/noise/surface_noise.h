@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/scene/scene.h"
-#include "eval/surface/limit_surface.h"
+#include "eval/surface/face_tree.h"
 #include "eval/surface/refined_faces.h"
 
 namespace limn::engine {

@@ -11,6 +11,7 @@
 #include "far_ext/error.h"
 #include "far_ext/forms/form_operators.h"
 #include "far_ext/forms/form_stencils.h"
+#include "far_ext/rows/points.h"
 #include "far_ext/topology/refined_cage.h"
 #include "far_ext/topology/refiner.h"
 
@@ -27,6 +28,8 @@ FieldSurface::FieldSurface(far_ext::ControlMesh const& cage, std::span<double co
 
     auto const base = far_ext::CreateRefiner(cage);
     far_ext::CheckForms(*base);
+    far_ext::CheckPoints(positions, cage.numVertices);
+    far_ext::CheckLength("form", form, base->GetLevel(0).GetNumEdges(), "edges", 1);
     _faces = std::make_unique<RefinedFaces>(LimitSurface(*base), levels);
     if (levels > 0) {
         Far::TopologyRefiner::UniformOptions options(levels);
@@ -84,9 +87,10 @@ void FieldSurface::Sampler::Bind(Index face) {
                                            : _quad.Bind(level, face, _field._form);
 }
 
-Eigen::Vector3d FieldSurface::Sampler::EvaluateHere(RefinedFaces::Place const& place) {
+Eigen::Vector3d FieldSurface::Sampler::EvaluateHere(SurfacePlace const& place) {
     double const s = place.s, t = place.t;
-    auto const derivatives = EvaluateDerivatives(_tree, place.domain, s, t);
+    auto const derivatives =
+        EvaluateDerivatives(_tree, _tree.LocateChecked(place.domain, s, t, FaceTree::kLimitDepth));
     if (!HasTangentPlane(derivatives)) return Eigen::Vector3d::Zero();
     if (_isRegular) {
         auto const values =
@@ -110,6 +114,7 @@ Eigen::Vector3d FieldSurface::Sampler::EvaluateHere(RefinedFaces::Place const& p
 void FieldSurface::Sampler::Evaluate(Index face, int domain, std::span<double const> s,
                                      std::span<double const> t,
                                      std::span<Eigen::Vector3d> vectors) {
+    CheckRoom(vectors.size(), s.size());
     _field._faces->FindSorted(face, domain, s, t, _places);
     Index bound = -1;
     for (auto const& place : _places) {

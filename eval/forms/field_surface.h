@@ -9,7 +9,7 @@
 
 #include "eval/forms/quad_form_patch.h"
 #include "eval/forms/triangle_form_patch.h"
-#include "eval/surface/limit_surface.h"
+#include "eval/surface/face_tree.h"
 #include "eval/surface/refined_faces.h"
 #include "far_ext/topology/control_mesh.h"
 
@@ -30,22 +30,25 @@ public:
     /// \param form       per edge of the cage
     /// \param levels     refinements; 1 is done at least where faces are not all quads (Loop:
     ///                   triangles)
-    /// \throws Error     as far_ext::CheckForms; TooLarge: 2^31 indices
+    /// \throws Error     as far_ext::CheckForms; TooLarge: 2^31 indices; BadOption: arrays that do
+    ///                   not reach all vertices or edges
     FieldSurface(far_ext::ControlMesh const& cage, std::span<double const> positions,
                  std::span<double const> form, int levels);
 
+    /// Keeps a view of the field, which must outlive it.
     class Sampler {
     public:
         explicit Sampler(FieldSurface const& field);
 
         /// \param face     of the cage, with a limit; \param domain as in LimitSurface
         /// \param vectors  one per place; 0 where the surface has no tangent plane
+        /// \throws Error   BadOption: those of RefinedFaces; less room than there are places
         void Evaluate(Index face, int domain, std::span<double const> s, std::span<double const> t,
                       std::span<Eigen::Vector3d> vectors);
 
     private:
         void Bind(Index face);
-        Eigen::Vector3d EvaluateHere(RefinedFaces::Place const& place);
+        Eigen::Vector3d EvaluateHere(SurfacePlace const& place);
 
         FieldSurface const& _field;
         FaceTree _tree;

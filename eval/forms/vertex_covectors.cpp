@@ -5,7 +5,9 @@
 #include <numbers>
 
 #include <Eigen/Dense>
+#include <fmt/format.h>
 
+#include "far_ext/error.h"
 #include "far_ext/forms/find_wheel.h"
 #include "far_ext/forms/form_operators.h"
 #include "far_ext/rows/points.h"
@@ -82,7 +84,7 @@ std::array<TangentMask, 2> MakeCurveMasks(bool isLoop, Wheel const& wheel, int f
             (std::sin(angle * j) + std::sin(angle * (j + 1))) / (4.0 * (4.0 * lambda - 1.0));
         cornerSum += across.corners[(first + j) % k] = corner;
     }
-// At the ends the curve's own rule: what the eigenvalue equation leaves for them; the vertex
+    // At the ends the curve's own rule: what the eigenvalue equation leaves for them; the vertex
     // takes the rest, so that the mask is blind to translations.
     double const firstCorner = across.corners[first % k];
     double const atEnds =
@@ -118,6 +120,14 @@ std::array<TangentMask, 2> MakeMasks(bool isLoop, Wheel const& wheel) {
     bool const hasAcross = isLoop || size > 1;
     if (wheel.parent.isCrease && hasAcross) return MakeCurveMasks(isLoop, wheel, cuts[0], size);
     return MakeCornerMasks(wheel, cuts[0], size);
+}
+
+Far::TopologyLevel GetLevel(Far::TopologyRefiner const& refiner, int level) {
+    if (level < 0 || level > refiner.GetMaxLevel()) {
+        throw Error(ErrorCode::BadOption, fmt::format("level {} does not exist; levels are 0 to {}",
+                                                      level, refiner.GetMaxLevel()));
+    }
+    return refiner.GetLevel(level);
 }
 
 }  // namespace
@@ -206,7 +216,7 @@ VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel co
 }
 
 VertexCovectors::VertexCovectors(Far::TopologyRefiner const& refiner, int level)
-    : _refiner(refiner), _level(refiner.GetLevel(level)) {
+    : _refiner(refiner), _level(GetLevel(refiner, level)) {
     for (Index vertex = 0; vertex < _level.GetNumVertices(); ++vertex) {
         size_t const k = _level.GetVertexFaces(vertex).size();
         if (k == 0 || !far_ext::IsSmoothInterior(_level, vertex)) continue;
@@ -220,6 +230,13 @@ VertexCovectors::VertexCovectors(Far::TopologyRefiner const& refiner, int level)
 
 VertexCovector VertexCovectors::Find(Index vertex, std::span<double const> form,
                                      std::span<double const> positions) const {
+    if (vertex < 0 || vertex >= _level.GetNumVertices()) {
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("vertex {} does not exist; the level has {} vertices, 0 to {}",
+                                vertex, _level.GetNumVertices(), _level.GetNumVertices() - 1));
+    }
+    far_ext::CheckLength("form", form, _level.GetNumEdges(), "edges", 1);
+    far_ext::CheckPoints(positions, _level.GetNumVertices());
     int const numSides = _refiner.GetSchemeType() == Sdc::SCHEME_LOOP ? 3 : 4;
     auto const faces = _level.GetVertexFaces(vertex);
     auto const corners = _level.GetVertexFaceLocalIndices(vertex);

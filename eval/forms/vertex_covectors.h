@@ -39,8 +39,11 @@ struct VertexCovector {
 /// \param positions  3 per vertex of the level
 /// \pre    faces are all quads (Catmull-Clark) or triangles (Loop); CheckForms has passed
 /// Source  [Wang06] Sec. 4.1; [Forms 7.2]
+/// Errors  BadOption: a level or vertex that does not exist, an array that does not reach all edges
+///         or vertices
 class VertexCovectors {
 public:
+    /// \param refiner  kept by reference, it must outlive this
     VertexCovectors(Far::TopologyRefiner const& refiner, int level);
 
     VertexCovector Find(Index vertex, std::span<double const> form,

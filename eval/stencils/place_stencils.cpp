@@ -14,10 +14,9 @@ namespace limn::eval {
 
 namespace {
 
-Eigen::AlignedBox3d GetBounds(std::span<double const> positions) {
+Eigen::AlignedBox3d GetBounds(far_ext::Points points) {
     Eigen::AlignedBox3d box;
-    for (size_t i = 0; i < positions.size(); i += 3)
-        box.extend(Eigen::Map<Eigen::Vector3d const>(&positions[i]));
+    for (size_t vertex = 0; vertex < points.size(); ++vertex) box.extend(points[vertex]);
     return box;
 }
 
@@ -25,6 +24,7 @@ Eigen::AlignedBox3d GetBounds(std::span<double const> positions) {
 
 PlaceStencils::PlaceStencils(LimitSurface const& surface, std::vector<SurfacePlace> places)
     : _surface(surface), _places(std::move(places)), _rowOfPlace(_places.size(), -1) {
+    CheckPlaces(surface, _places);
     constexpr double kDeepest = 1 << kRowDepth;
     FaceTree tree(surface, std::vector<FaceTree::Values>{});
     Index bound = -1;
@@ -54,16 +54,13 @@ void PlaceStencils::AddRow(FaceTree const& tree, PatchPoint const& at) {
 }
 
 /// Relative to the row's first point: that costs no digits where the mesh is far from the origin.
-SurfaceDerivatives PlaceStencils::ApplyRow(size_t row, double const* positions) const {
+SurfaceDerivatives PlaceStencils::ApplyRow(size_t row, far_ext::Points points) const {
     SurfaceDerivatives d;
     Eigen::Vector3d* const sums[] = {&d.position, &d.ds, &d.dt, &d.dss, &d.dst, &d.dtt};
     for (Eigen::Vector3d* sum : sums) sum->setZero();
-    auto const pointAt = [&](size_t k) {
-        return Eigen::Map<Eigen::Vector3d const>(positions + size_t{3} * _indices[k]);
-    };
-    Eigen::Vector3d const origin = pointAt(_offsets[row]);
+    auto const origin = points[_indices[_offsets[row]]];
     for (size_t k = _offsets[row]; k < _offsets[row + 1]; ++k) {
-        Eigen::Vector3d const point = pointAt(k) - origin;
+        Eigen::Vector3d const point = points[_indices[k]] - origin;
         for (int set = 0; set < far_ext::kMaxWeightSets; ++set)
             *sums[set] += _weights[k][set] * point;
     }
@@ -108,13 +105,15 @@ std::vector<SurfaceSample> PlaceStencils::EvaluateWith(std::span<double const> p
 
 std::vector<SurfaceSample> PlaceStencils::Evaluate(std::span<double const> positions,
                                                    double orientation) const {
+    far_ext::CheckPoints(positions, GetNumVertices());
     return EvaluateWith(positions, orientation, 1e-7,
-                        [&](size_t row) { return ApplyRow(row, positions.data()); });
+                        [&](size_t row) { return ApplyRow(row, positions); });
 }
 
 std::vector<SurfaceSample> PlaceStencils::Evaluate(std::span<double const> positions,
                                                    double orientation,
                                                    StencilEvaluator const& evaluator) const {
+    far_ext::CheckPoints(positions, GetNumVertices());
     Eigen::Vector3d const centre = GetBounds(positions).center();
     std::vector<float> source(positions.size());
     for (size_t i = 0; i < source.size(); ++i) {
@@ -141,8 +140,7 @@ std::vector<SurfaceSample> PlaceStencils::Evaluate(std::span<double const> posit
 }
 
 far_ext::StencilRows PlaceStencils::MakeRows() const {
-    Index const numVertices = _surface.GetRefiner().GetLevel(0).GetNumVertices();
-    far_ext::StencilRows rows(numVertices, far_ext::kMaxWeightSets);
+    far_ext::StencilRows rows(GetNumVertices(), far_ext::kMaxWeightSets);
     float entry[far_ext::kMaxWeightSets];
     for (size_t row = 0; row < GetNumRows(); ++row) {
         for (size_t k = _offsets[row]; k < _offsets[row + 1]; ++k) {

@@ -6,15 +6,9 @@
 
 #include "eval/stencils/stencil_evaluator.h"
 #include "eval/surface/surface_sample.h"
+#include "far_ext/rows/points.h"
 
 namespace limn::eval {
-
-/// A place of the limit surface: (s,t) in one of a face's domains.
-struct SurfacePlace {
-    Index face = 0;
-    int domain = 0;
-    double s = 0.0, t = 0.0;
-};
 
 /// The limit at listed places as weights over the cage's vertices, for evaluating the same places
 /// again and again while the vertices move.
@@ -31,7 +25,10 @@ class PlaceStencils {
 public:
     static constexpr int kRowDepth = 6;
 
-    /// \param surface  kept by reference; of vertex topology
+    /// \param surface  kept by reference, it must outlive this; of vertex topology
+    /// \throws Error    BadOption: a face or domain that does not exist, (s,t) more than
+    /// kPlaceSlack
+    ///                  outside the domain; with the place's number
     PlaceStencils(LimitSurface const& surface, std::vector<SurfacePlace> places);
 
     size_t GetNumPlaces() const { return _places.size(); }
@@ -41,13 +38,15 @@ public:
 
     /// Samples of all places for one set of positions (3 per vertex), in double. Places on faces
     /// without a limit are left as they are made.
+    ///
+    /// \throws Error  BadOption: positions that do not reach all vertices
     std::vector<SurfaceSample> Evaluate(std::span<double const> positions,
                                         double orientation) const;
 
     /// The same with the rows applied in float. Positions are taken relative to their centre first.
     ///
     /// \param evaluator  over MakeRows()
-    /// \throws Error     BadMesh: a position that float cannot hold
+    /// \throws Error     BadMesh: a position that float cannot hold; BadOption: as above
     std::vector<SurfaceSample> Evaluate(std::span<double const> positions, double orientation,
                                         StencilEvaluator const& evaluator) const;
 
@@ -56,10 +55,12 @@ public:
 
 private:
     void AddRow(FaceTree const& tree, PatchPoint const& at);
-    SurfaceDerivatives ApplyRow(size_t row, double const* positions) const;
+    SurfaceDerivatives ApplyRow(size_t row, far_ext::Points points) const;
     template <class Derive>
     std::vector<SurfaceSample> EvaluateWith(std::span<double const> positions, double orientation,
                                             double accuracy, Derive const& derive) const;
+
+    Index GetNumVertices() const { return _surface.GetRefiner().GetLevel(0).GetNumVertices(); }
 
     LimitSurface const& _surface;
     std::vector<SurfacePlace> _places;

@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-#include "eval/surface/limit_surface.h"
+#include "eval/surface/face_tree.h"
 
 namespace limn::eval {
 

@@ -2,6 +2,7 @@
 #include "eval/surface/finer_surface.h"
 
 #include "eval/surface/surface_sample.h"
+#include "far_ext/rows/points.h"
 #include "far_ext/topology/refined_cage.h"
 #include "far_ext/topology/refiner.h"
 
@@ -25,6 +26,7 @@ std::optional<FinerSurface> FinerSurface::Build(LimitSurface const& base,
                                                 far_ext::ControlMesh const& cage,
                                                 far_ext::ControlMesh const& finer,
                                                 std::span<double const> positions) {
+    far_ext::CheckPoints(positions, finer.numVertices);
     int const levels = cage.scheme == finer.scheme ? FindLevels(cage, finer.GetNumFaces()) : 0;
     if (levels == 0) return {};
     auto const refined = far_ext::CreateRefiner(cage);
@@ -40,8 +42,7 @@ std::optional<FinerSurface> FinerSurface::Build(LimitSurface const& base,
         auto const vertices = level.GetFaceVertices(face);
         for (size_t k = 0; k < n; ++k) {
             if (finer.faceSizes[face] != static_cast<int>(n) ||
-                finer.faceVertices[static_cast<size_t>(face) * n + k] !=
-                    vertices[static_cast<int>(k)])
+                finer.faceVertices[face * n + k] != vertices[static_cast<int>(k)])
                 return {};
         }
     }
@@ -61,12 +62,14 @@ FinerSurface::Sampler::Sampler(FinerSurface const& surface)
 
 void FinerSurface::Sampler::Evaluate(Index face, int domain, std::span<double const> s,
                                      std::span<double const> t, std::span<Eigen::Vector3d> points) {
+    CheckRoom(points.size(), s.size());
     _surface._faces.FindSorted(face, domain, s, t, _places);
     Index bound = -1;
     for (auto const& [at, index] : _places) {
         if (at.face != bound) _tree.Bind(at.face);
         bound = at.face;
-        points[index] = EvaluateDerivatives(_tree, at.domain, at.s, at.t).position;
+        PatchPoint const piece = _tree.LocateChecked(at.domain, at.s, at.t, FaceTree::kLimitDepth);
+        points[index] = EvaluateDerivatives(_tree, piece).position;
     }
 }
 

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "eval/surface/limit_surface.h"
+#include "eval/surface/face_tree.h"
 #include "eval/surface/refined_faces.h"
 #include "far_ext/topology/control_mesh.h"
 
@@ -25,17 +25,22 @@ public:
     ///                   order, and the cage's scheme
     /// \param positions  3 per vertex of it
     /// \return           none where its faces are others, or one has no limit where the cage has
+    /// \throws Error     BadOption: positions that do not reach all of its vertices
     static std::optional<FinerSurface> Build(LimitSurface const& base,
                                              far_ext::ControlMesh const& cage,
                                              far_ext::ControlMesh const& finer,
                                              std::span<double const> positions);
 
+    /// Keeps a view of the surface, which must outlive it.
     class Sampler {
     public:
         explicit Sampler(FinerSurface const& surface);
 
-        /// Limit positions. \param face  of the cage, with a limit; \param domain as in
-        /// LimitSurface
+        /// Limit positions.
+        ///
+        /// \param face    of the cage, with a limit; \param domain as in LimitSurface
+        /// \param points  one per place
+        /// \throws Error  BadOption: those of RefinedFaces; less room than there are places
         void Evaluate(Index face, int domain, std::span<double const> s, std::span<double const> t,
                       std::span<Eigen::Vector3d> points);
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "eval/surface/face_places.h"
+#include <array>
+#include <cmath>
+
+#include "eval/surface/surface_place.h"
 
 namespace limn::eval {
 
@@ -16,7 +19,7 @@ public:
     explicit GradedPoints(LimitSurface const& surface)
         : _surface(surface), _level(surface.GetRefiner().GetLevel(0)) {}
 
-    /// Calls visit(FacePlace, weight) for all points of a face with a limit.
+    /// Calls visit(SurfacePlace, weight) for all points of a face with a limit.
     template <class Visit>
     void ForEach(Index face, Visit const& visit) const {
         int const numDomains = _surface.GetNumDomains(face);
@@ -31,10 +34,13 @@ public:
                     if (IsIrregular(vertices[corner])) irregular |= 1u << corner;
                 }
             }
+            auto const visitAt = [&](double s, double t, double weight) {
+                visit(SurfacePlace{face, domain, s, t}, weight);
+            };
             if (_surface.IsLoop())
-                VisitTriangle(domain, {0, 0}, {1, 0}, {0, 1}, irregular, 0, visit);
+                VisitTriangle({0, 0}, {1, 0}, {0, 1}, irregular, 0, visitAt);
             else
-                VisitSquare(domain, 0.0, 0.0, 1.0, irregular, 0, visit);
+                VisitSquare(0.0, 0.0, 1.0, irregular, 0, visitAt);
         }
     }
 
@@ -50,36 +56,36 @@ private:
     }
 
     template <class Visit>
-    void VisitSquare(int domain, double s, double t, double size, unsigned irregular, int depth,
+    void VisitSquare(double s, double t, double size, unsigned irregular, int depth,
                      Visit const& visit) const {
         if (depth < kMinDepth || (irregular && depth < kMaxDepth)) {
             double const half = 0.5 * size;
-            VisitSquare(domain, s, t, half, irregular & 1u, depth + 1, visit);
-            VisitSquare(domain, s + half, t, half, irregular & 2u, depth + 1, visit);
-            VisitSquare(domain, s + half, t + half, half, irregular & 4u, depth + 1, visit);
-            VisitSquare(domain, s, t + half, half, irregular & 8u, depth + 1, visit);
+            VisitSquare(s, t, half, irregular & 1u, depth + 1, visit);
+            VisitSquare(s + half, t, half, irregular & 2u, depth + 1, visit);
+            VisitSquare(s + half, t + half, half, irregular & 4u, depth + 1, visit);
+            VisitSquare(s, t + half, half, irregular & 8u, depth + 1, visit);
             return;
         }
         for (int j = 0; j < 3; ++j) {
             for (int i = 0; i < 3; ++i) {
-                visit(FacePlace{domain, s + size * kGaussNodes[i], t + size * kGaussNodes[j]},
+                visit(s + size * kGaussNodes[i], t + size * kGaussNodes[j],
                       size * size * kGaussWeights[i] * kGaussWeights[j]);
             }
         }
     }
 
     template <class Visit>
-    void VisitTriangle(int domain, Corner a, Corner b, Corner c, unsigned irregular, int depth,
+    void VisitTriangle(Corner a, Corner b, Corner c, unsigned irregular, int depth,
                        Visit const& visit) const {
         if (depth < kMinDepth || (irregular && depth < kMaxDepth)) {
             auto const middle = [](Corner const& p, Corner const& q) {
                 return Corner{0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])};
             };
             Corner const ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-            VisitTriangle(domain, a, ab, ca, irregular & 1u, depth + 1, visit);
-            VisitTriangle(domain, ab, b, bc, irregular & 2u, depth + 1, visit);
-            VisitTriangle(domain, ca, bc, c, irregular & 4u, depth + 1, visit);
-            VisitTriangle(domain, ab, bc, ca, 0u, depth + 1, visit);
+            VisitTriangle(a, ab, ca, irregular & 1u, depth + 1, visit);
+            VisitTriangle(ab, b, bc, irregular & 2u, depth + 1, visit);
+            VisitTriangle(ca, bc, c, irregular & 4u, depth + 1, visit);
+            VisitTriangle(ab, bc, ca, 0u, depth + 1, visit);
             return;
         }
         double const area = std::abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
@@ -90,7 +96,7 @@ private:
                 double const u = kGaussNodes[i] * width, v = kGaussNodes[j];
                 double const s = a[0] + u * (b[0] - a[0]) + v * (c[0] - a[0]);
                 double const t = a[1] + u * (b[1] - a[1]) + v * (c[1] - a[1]);
-                visit(FacePlace{domain, s, t}, area * kGaussWeights[i] * kGaussWeights[j] * width);
+                visit(s, t, area * kGaussWeights[i] * kGaussWeights[j] * width);
             }
         }
     }

@@ -10,31 +10,41 @@ RefinedFaces::RefinedFaces(LimitSurface const& base, int levels)
     Index next = 0;
     for (Index face = 0; face < base.GetNumFaces(); ++face) {
         int const numDomains = base.GetNumDomains(face);
-        _isPolygon.push_back(numDomains > 1);
-        _firstChild.push_back(next);
+        _baseFaces.push_back({next, base.HasLimit(face) ? numDomains : 0});
         next += numDomains > 1 ? numDomains : 4;
     }
 }
 
-RefinedFaces::Place RefinedFaces::Find(Index face, int domain, double s, double t) const {
-    Place place{face, domain, s, t};
-    for (int level = 1; level <= _levels; ++level) {
-        Index const first = level == 1 ? _firstChild[place.face] : 4 * place.face;
-        if (level == 1 && _isPolygon[face]) {
-            // A polygon's domains are its children, in their own coordinates.
-            place.face = first + domain;
-            place.domain = 0;
-            continue;
-        }
-        place.face = first + GetChildAt(_isLoop, place.s, place.t);
-    }
+void RefinedFaces::CheckDomain(Index face, int domain) const {
+    CheckFace(face, static_cast<Index>(_baseFaces.size()));
+    eval::CheckDomain(face, domain, _baseFaces[face].numDomains);
+}
+
+SurfacePlace RefinedFaces::Find(SurfacePlace const& place) const {
+    CheckDomain(place.face, place.domain);
+    CheckInDomain(_isLoop, place);
+    return Descend(place);
+}
+
+SurfacePlace RefinedFaces::Descend(SurfacePlace place) const {
+    if (_levels == 0) return place;
+    BaseFace const& base = _baseFaces[place.face];
+    if (base.numDomains > 1)  // a polygon's domains are its children, in their own coordinates
+        place = {base.firstChild + place.domain, 0, place.s, place.t};
+    else
+        place.face = base.firstChild + GetChildAt(_isLoop, place.s, place.t);
+    for (int level = 2; level <= _levels; ++level)
+        place.face = 4 * place.face + GetChildAt(_isLoop, place.s, place.t);
     return place;
 }
 
 void RefinedFaces::FindSorted(Index face, int domain, std::span<double const> s,
                               std::span<double const> t, std::vector<Sample>& samples) const {
+    CheckDomain(face, domain);
+    CheckInDomain(_isLoop, face, domain, s, t);
     samples.clear();
-    for (size_t i = 0; i < s.size(); ++i) samples.push_back({Find(face, domain, s[i], t[i]), i});
+    for (size_t i = 0; i < s.size(); ++i)
+        samples.push_back({Descend({face, domain, s[i], t[i]}), i});
     std::sort(samples.begin(), samples.end(), [](Sample const& a, Sample const& b) {
         return a.at.face != b.at.face ? a.at.face < b.at.face : a.index < b.index;
     });

@@ -4,29 +4,27 @@
 #include <span>
 #include <vector>
 
-#include "eval/surface/limit_surface.h"
+#include "eval/surface/surface_place.h"
 
 namespace limn::eval {
 
 /// Where a place of a cage's limit surface lies on the uniformly refined cage, whose limit is the
 /// same: the refined face, in OpenSubdiv's numbering, and (s,t) in its own domain.
+///
+/// Errors  BadOption: a face that does not exist or has no limit, a domain it has not, (s,t) more
+///         than kPlaceSlack outside. On the refined face they may lie 2^levels as far outside, so
+///         that they are for FaceTree::LocateChecked.
 class RefinedFaces {
 public:
-    struct Place {
-        Index face;
-        int domain;
-        double s, t;
-    };
-
-    /// \param base    the unrefined surface
+    /// \param base    the unrefined surface; kept only while this is built
     /// \param levels  0 or more
     RefinedFaces(LimitSurface const& base, int levels);
 
-    Place Find(Index face, int domain, double s, double t) const;
+    SurfacePlace Find(SurfacePlace const& place) const;
 
     /// A place of a list, and which one it was.
     struct Sample {
-        Place at;
+        SurfacePlace at;
         size_t index;
     };
 
@@ -36,10 +34,17 @@ public:
                     std::vector<Sample>& samples) const;
 
 private:
+    struct BaseFace {
+        Index firstChild;  // on level 1
+        int numDomains;    // 0 without a limit
+    };
+
+    void CheckDomain(Index face, int domain) const;
+    SurfacePlace Descend(SurfacePlace place) const;
+
     int _levels;
     bool _isLoop;
-    std::vector<char> _isPolygon;    // per base face: with a domain per corner
-    std::vector<Index> _firstChild;  // per base face, on level 1
+    std::vector<BaseFace> _baseFaces;
 };
 
 }  // namespace limn::eval

@@ -19,7 +19,9 @@ std::array<double, 6> EvaluatePolynomial(FaceTree const& tree, PatchPoint const&
                : EvaluateTrianglePolynomial(c, at.x, at.y);
 }
 
-SurfaceDerivatives Evaluate(FaceTree const& tree, PatchPoint const& at) {
+}  // namespace
+
+SurfaceDerivatives EvaluateDerivatives(FaceTree const& tree, PatchPoint const& at) {
     SurfaceDerivatives d;
     for (int c = 0; c < 3; ++c) {
         auto const v = EvaluateDerivatives(tree, at, c);
@@ -33,10 +35,8 @@ SurfaceDerivatives Evaluate(FaceTree const& tree, PatchPoint const& at) {
     return d;
 }
 
-}  // namespace
-
 SurfaceDerivatives EvaluateDerivatives(FaceTree& tree, int domain, double s, double t) {
-    return Evaluate(tree, tree.Locate(domain, s, t, FaceTree::kLimitDepth));
+    return EvaluateDerivatives(tree, tree.Locate(domain, s, t, FaceTree::kLimitDepth));
 }
 
 bool HasTangentPlane(SurfaceDerivatives const& d, double leastSine) {
@@ -75,6 +75,7 @@ Curvature ComputeCurvature(Eigen::Vector3d const& ds, Eigen::Vector3d const& dt,
 }
 
 std::array<double, 6> EvaluateDerivatives(FaceTree const& tree, PatchPoint const& at, int channel) {
+    tree.CheckChannel(channel);
     auto const v = EvaluatePolynomial(tree, at, channel);
     double const one = at.scale, two = one * one;
     return {at.origin[channel] + v[0], v[1] * one, v[2] * one, v[3] * two, v[4] * two, v[5] * two};
@@ -117,13 +118,14 @@ SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t, dou
 
     PatchPoint const apart = tree.Locate(domain, placeS, placeT, FaceTree::kCurvatureDepth);
     sample.isMoved = apart.isMoved;
-    SurfaceDerivatives const second = Evaluate(tree, apart);
+    SurfaceDerivatives const second = EvaluateDerivatives(tree, apart);
     SurfaceDerivatives const& use = HasTangentPlane(second) ? second : shape;
     sample.curvature = ComputeCurvature(use.ds, use.dt, use.dss, use.dst, use.dtt, orientation);
     return sample;
 }
 
 double EvaluateChannel(FaceTree& tree, int domain, double s, double t, int channel, int maxDepth) {
+    tree.CheckChannel(channel);
     PatchPoint const at = tree.Locate(domain, s, t, maxDepth);
     return at.origin[channel] + EvaluatePolynomial(tree, at, channel)[0];
 }

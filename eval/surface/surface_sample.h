@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "eval/surface/limit_surface.h"
+#include "eval/surface/face_tree.h"
 
 namespace limn::eval {
 
@@ -31,9 +31,17 @@ struct SurfaceDerivatives {
     Eigen::Vector3d position, ds, dt, dss, dst, dtt;
 };
 
+// Places are (s,t) in a domain of the tree's current face.
+//
+// Errors  BadOption: those of FaceTree; a tree of less than three channels where they are to be the
+//         position.
+
 /// Evaluates the tree's first three channels as they are: nothing is moved away from an irregular
 /// corner but what is nearer to it than doubles can tell.
 SurfaceDerivatives EvaluateDerivatives(FaceTree& tree, int domain, double s, double t);
+
+/// The same of a piece with a point in it.
+SurfaceDerivatives EvaluateDerivatives(FaceTree const& tree, PatchPoint const& at);
 
 /// Curvature from derivatives; the unit normal is ds x dt.
 ///
@@ -54,7 +62,7 @@ SurfaceSample MakeSample(SurfaceDerivatives const& derivatives, double orientati
 /// domain.
 std::array<double, 6> EvaluateDerivatives(FaceTree const& tree, PatchPoint const& at, int channel);
 
-/// Evaluates one place of the tree's current face; its first three channels are the position.
+/// Evaluates one place; the tree's first three channels are the position.
 ///
 /// \param orientation  +1, or -1 to turn the normal round
 SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t, double orientation);

@@ -15,11 +15,16 @@ SurfaceSampler::SurfaceSampler(FaceTree& tree, Quantity quantity, float orientat
       _values(values),
       _numChannels(eval::GetNumChannels(quantity) + values.count),
       // Values are evaluated in threes, so that the last group may start early.
-      _planes(static_cast<size_t>(_numChannels + 3) * kStride),
+      _planes((_numChannels + 3) * kStride),
       _degenerate(kStride) {
+    tree.CheckChannel(2);  // the position's last
+    if (values.count > 0) {
+        tree.CheckChannel(values.first);
+        tree.CheckChannel(values.first + values.count - 1);
+    }
     auto const prepare = [&](auto& lanes) {
-        lanes.coefficients.resize(
-            static_cast<size_t>(tree.GetLength() * tree.GetNumCoefficients()));
+        size_t const numCoefficients = tree.GetNumCoefficients();
+        lanes.coefficients.resize(numCoefficients * tree.GetLength());
         lanes.x.resize(kStride);
         lanes.y.resize(kStride);
     };
@@ -33,11 +38,6 @@ SurfaceSampler::SurfaceSampler(FaceTree& tree, Quantity quantity, float orientat
 bool SurfaceSampler::NeedsDouble(PatchPoint const& patch) const {
     bool const isTriangle = _tree.GetNumCoefficients() == 15;
     return NeedsCurvature() && (isTriangle || std::abs(patch.scale) >= 4.0);
-}
-
-void SurfaceSampler::Bind(Index face) {
-    _face = face;
-    if (_tree.GetFace() != face) _tree.Bind(face);
 }
 
 template <class Real>
@@ -91,22 +91,22 @@ template <class Real>
 void SurfaceSampler::EvaluateValues(Lanes<Real> const& lanes, SurfaceBatch<Real> const& batch) {
     SurfaceFunctions<Real> const& kernel = GetKernel<SurfaceKernel>();
     bool const isTriangle = _tree.GetNumCoefficients() == 15;
-    float* const values = _planes.data() + static_cast<size_t>(GetFirstValue()) * kStride;
+    float* const values = _planes.data() + GetFirstValue() * kStride;
     int const end = _values.first + _values.count;
     for (int c = _values.first; c < end; c += 3) {
         int const group = std::min(c, end - 3);  // may begin with channels that are not asked for
         SurfaceBatch<Real> part = batch;
         part.coefficients = lanes.coefficients.data() + group * _tree.GetNumCoefficients();
         if (group == c) {
-            part.out = values + static_cast<size_t>(c - _values.first) * kStride;
+            part.out = values + (c - _values.first) * kStride;
             kernel.evaluate(part, Quantity::Position, isTriangle);
             continue;
         }
-        part.out = _planes.data() + static_cast<size_t>(_numChannels) * kStride;
+        part.out = _planes.data() + _numChannels * kStride;
         kernel.evaluate(part, Quantity::Position, isTriangle);
         for (int k = c; k < end; ++k) {
-            std::copy_n(part.out + static_cast<size_t>(k - group) * kStride, batch.count,
-                        values + static_cast<size_t>(k - _values.first) * kStride);
+            std::copy_n(part.out + (k - group) * kStride, batch.count,
+                        values + (k - _values.first) * kStride);
         }
     }
 }
@@ -145,7 +145,7 @@ SurfaceSample SurfaceSampler::EvaluateFrameExactly(int domain, double s, double 
     if (!sample.isMoved) return sample;
     ++_counts.moved;
     if (_counts.movedPlaces.size() < kMaxPlaces) {
-        _counts.movedPlaces.push_back({_face, domain, s, t});
+        _counts.movedPlaces.push_back({_tree.GetFace(), domain, s, t});
     }
     return sample;
 }

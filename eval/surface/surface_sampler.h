@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "eval/surface/limit_surface.h"
 #include "eval/surface/surface_kernel.h"
 #include "eval/surface/surface_sample.h"
 
@@ -19,6 +18,7 @@ namespace limn::eval {
 ///           Curvature, Direction and Tangents (SharesBits); between these two kinds they differ by
 ///           rounding.
 /// Threads   one per thread, with its own tree; several samplers may share a tree
+/// Errors    BadOption: those of FaceTree, with the number of the place among those given
 class SurfaceSampler {
 public:
     /// A run of the tree's channels beside the position.
@@ -26,7 +26,8 @@ public:
         int first = 3, count = 0;
     };
 
-    /// \param tree         its first three channels are the position; kept by reference
+    /// \param tree         its first three channels are the position; kept by reference, it must
+    ///                     outlive the sampler
     /// \param orientation  +1, or -1 to turn normals round
     /// \param values       which of the tree's channels to evaluate, too
     SurfaceSampler(FaceTree& tree, Quantity quantity, float orientation, Values values);
@@ -40,19 +41,17 @@ public:
         return (a >= Quantity::Curvature) == (b >= Quantity::Curvature);
     }
 
-    struct Place {
-        Index face;
-        int domain;
-        double s, t;
-    };
     struct Counts {
         size_t moved = 0, degenerate = 0;
-        std::vector<Place> movedPlaces;  ///< the first kMaxPlaces of them
+        std::vector<SurfacePlace> movedPlaces;  ///< the first kMaxPlaces of them
     };
-    static constexpr size_t kMaxPlaces =
-        1 << 16;  // so many that which are kept does not depend on threads
+    /// So many that which are kept does not depend on threads.
+    static constexpr size_t kMaxPlaces = 1 << 16;
 
-    void Bind(Index face);
+    /// Makes `face` the current one, of the tree as well, unless another sampler has done so.
+    void Bind(Index face) {
+        if (_tree.GetFace() != face) _tree.Bind(face);
+    }
 
     /// Evaluates samples of a domain of the bound face and hands them over in blocks:
     /// visit(samples, planes, stride): planes[c * stride + i] belongs to sample samples[i].
@@ -87,7 +86,7 @@ private:
     /// All but the position and the values.
     SurfaceSample EvaluateFrameExactly(int domain, double s, double t, size_t column);
     void Put(int channel, size_t column, double value) {
-        _planes[static_cast<size_t>(channel) * kStride + column] = static_cast<float>(value);
+        _planes[channel * kStride + column] = static_cast<float>(value);
     }
     void PutVector(int channel, size_t column, Eigen::Vector3d const& v) {
         for (int c = 0; c < 3; ++c) Put(channel + c, column, v[c]);
@@ -98,7 +97,6 @@ private:
     float _orientation;
     Values _values;
     int _numChannels;
-    Index _face = -1;
     Counts _counts;
     std::vector<float> _planes;
     Lanes<float> _float;

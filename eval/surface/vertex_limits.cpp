@@ -4,7 +4,6 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include "eval/parallel/rows.h"
-#include "eval/surface/face_places.h"
 #include "eval/surface/surface_sample.h"
 
 namespace limn::eval {
@@ -30,6 +29,7 @@ std::vector<Index> ChooseFaces(LimitSurface const& surface, Far::TopologyLevel c
 
 VertexLimits EvaluateVertexLimits(LimitSurface const& surface, std::span<double const> values,
                                   int length, int maxDepth, std::function<void()> const& onBlock) {
+    surface.CheckValues(values, length);
     Far::TopologyLevel const level = surface.GetRefiner().GetLevel(0);
     std::vector<Index> const chosen = ChooseFaces(surface, level);
     VertexLimits limits{{values.begin(), values.end()}, std::vector<char>(chosen.size(), 0)};

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "eval/surface/limit_surface.h"
+#include "eval/surface/face_tree.h"
 
 namespace limn::eval {
 
@@ -22,6 +22,7 @@ struct VertexLimits {
 /// \param maxDepth  refinements towards an irregular corner; the place evaluated is 2^-maxDepth of
 ///                  the face off it
 /// \param onBlock   called now and then; may throw to end the work
+/// \throws Error    BadOption: values that do not reach all vertices
 VertexLimits EvaluateVertexLimits(LimitSurface const& surface, std::span<double const> values,
                                   int length, int maxDepth = FaceTree::kLimitDepth,
                                   std::function<void()> const& onBlock = {});

@@ -11,7 +11,7 @@
 
 #include "engine/bake/audit/extraordinary_discs.h"
 #include "engine/bake/raster/face_bins.h"
-#include "eval/surface/face_places.h"
+#include "eval/surface/surface_place.h"
 #include "eval/surface/surface_sampler.h"
 #include "far_ext/topology/face_components.h"
 
@@ -144,7 +144,7 @@ std::vector<double> GaussBonnetAuditor::FindAreas() const {
         if (!_input.surface.HasLimit(face)) continue;
         tree.Bind(face);
         eval::ForEachGaussPoint(
-            _input.surface, face, [&](eval::FacePlace const& place, double weight) {
+            _input.surface, face, [&](eval::SurfacePlace const& place, double weight) {
                 auto const x = eval::EvaluateSample(tree, place.domain, place.s, place.t, 1.0);
                 areas[_components.ofFace[face]] += weight * x.tangentS.cross(x.tangentT).norm();
             });

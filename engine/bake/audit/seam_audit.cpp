@@ -10,7 +10,7 @@
 #include "engine/bake/layout.h"
 #include "engine/images/exr_lookup.h"
 #include "engine/images/udim.h"
-#include "eval/surface/face_places.h"
+#include "eval/surface/surface_place.h"
 
 namespace limn::engine {
 
@@ -50,12 +50,12 @@ SeamAuditor::Values SeamAuditor::LookAlong(Index face, int corner, bool isRevers
     _raster.Bind(face);
     for (int k = 0; k < kPlaces; ++k) {
         double const tau = (k + 0.5) / kPlaces;
-        auto const [domain, s, t] = eval::GetEdgePlace(_input.uvSurface, face, faceSize, corner,
-                                                       isReversed ? 1.0 - tau : tau);
-        auto const [u, v] = _raster.Evaluate(domain, s, t);
+        auto const place = eval::GetEdgePlace(_input.uvSurface, face, faceSize, corner,
+                                              isReversed ? 1.0 - tau : tau);
+        auto const [u, v] = _raster.Evaluate(place.domain, place.s, place.t);
         // A seam on a tile's border belongs to the tile its face lies in: look a hair inside.
-        auto const [insideU, insideV] =
-            _raster.Evaluate(domain, 0.01 * 0.5 + 0.99 * s, 0.01 * 0.5 + 0.99 * t);
+        auto const [insideU, insideV] = _raster.Evaluate(place.domain, 0.01 * 0.5 + 0.99 * place.s,
+                                                         0.01 * 0.5 + 0.99 * place.t);
         values.emplace_back();
         auto const tile = FindUdimTile(insideU, insideV);
         auto const path = tile ? _pathOfTile.find(tile->GetNumber()) : _pathOfTile.end();

@@ -12,7 +12,7 @@
 #include "engine/bake/maps/channel_group.h"
 #include "engine/bake/maps/map_options.h"
 #include "engine/scene/job.h"
-#include "eval/surface/limit_surface.h"
+#include "eval/surface/face_tree.h"
 #include "eval/surface/surface_kernel.h"
 
 namespace limn::engine {

@@ -13,7 +13,7 @@
 #include "engine/bake/maps/map_table.h"
 #include "engine/bake/maps/portable_math.h"
 #include "engine/bake/raster/uv_raster.h"
-#include "eval/surface/face_places.h"
+#include "eval/surface/surface_place.h"
 #include "eval/surface/surface_sample.h"
 
 namespace limn::engine {
@@ -35,7 +35,7 @@ struct AreaFinder {
         Areas areas;
         tree.Bind(face);
         raster.Bind(face);
-        eval::ForEachGaussPoint(surface, face, [&](eval::FacePlace const& place, double weight) {
+        eval::ForEachGaussPoint(surface, face, [&](eval::SurfacePlace const& place, double weight) {
             auto const sample = eval::EvaluateSample(tree, place.domain, place.s, place.t, 1.0);
             auto const [us, ut, vs, vt] = raster.GetJacobian(place.domain, place.s, place.t);
             areas.surface += weight * sample.tangentS.cross(sample.tangentT).norm();

@@ -8,8 +8,8 @@
 
 #include "engine/bake/raster/texture_piece.h"
 #include "engine/images/udim.h"
+#include "eval/surface/face_tree.h"
 #include "eval/surface/inversion_kernel.h"
-#include "eval/surface/limit_surface.h"
 #include "far_ext/rows/large_array.h"
 
 namespace limn::engine {

@@ -112,7 +112,7 @@ TEST(GradedPoints, WeightsAddUpToTheDomain) {
         eval::LimitSurface const surface(*refiner);
         eval::GradedPoints const points(surface);
         double sum = 0.0;
-        points.ForEach(0, [&](eval::FacePlace const& place, double weight) {
+        points.ForEach(0, [&](eval::SurfacePlace const& place, double weight) {
             sum += weight;
             EXPECT_TRUE(place.s > 0.0 && place.t > 0.0 && place.s < 1.0 && place.t < 1.0);
         });

@@ -7,7 +7,7 @@
 #include "engine/images/colour_ramp.h"
 #include "engine/noise/gradient_noise.h"
 #include "engine/noise/surface_noise.h"
-#include "eval/surface/face_places.h"
+#include "eval/surface/surface_place.h"
 #include "eval/surface/surface_sample.h"
 #include "far_ext/error.h"
 #include "far_ext/topology/refiner.h"

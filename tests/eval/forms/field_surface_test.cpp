@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "eval/surface/face_places.h"
+#include "eval/surface/surface_place.h"
 #include "eval/surface/surface_sample.h"
 #include "support/fit_meshes.h"
 #include "support/form_meshes.h"
@@ -40,7 +40,7 @@ void ForEachPlace(engine::Scene const& scene, eval::FieldSurface const& field, V
     for (Index face = 0; face < surface.GetNumFaces(); ++face) {
         if (!surface.HasLimit(face)) continue;
         tree.Bind(face);
-        eval::ForEachGaussPoint(surface, face, [&](eval::FacePlace const& place, double) {
+        eval::ForEachGaussPoint(surface, face, [&](eval::SurfacePlace const& place, double) {
             Vector vector;
             sampler.Evaluate(face, place.domain, {&place.s, 1}, {&place.t, 1}, {&vector, 1});
             visit(eval::EvaluateSample(tree, place.domain, place.s, place.t, 1.0), vector);
@@ -136,6 +136,27 @@ TEST(FieldSurface, IsTheSameFromBothSidesOfAnEdge) {
           test::MakeGridWithHole(5, 4)}) {
         for (int levels : {1, 3}) EXPECT_LT(findJump(scene, levels), 1e-11);
     }
+}
+
+TEST(FieldSurface, WhatIsOutOfRangeIsRefused) {
+    auto const cube = test::MakeCube();
+    std::vector<double> const form(12, 1.0), six(6);
+    EXPECT_EQ(test::RefusalOf([&] { eval::FieldSurface(cube.cage, six, form, 1); }),
+              "positions: 6 values are too few for 8 vertices of 3");
+    EXPECT_EQ(test::RefusalOf([&] { eval::FieldSurface(cube.cage, cube.positions, six, 1); }),
+              "form: 6 values are too few for 12 edges of 1");
+    eval::FieldSurface const field(cube.cage, cube.positions, form, 1);
+    eval::FieldSurface::Sampler sampler(field);
+    std::vector<double> const s{0.5, 0.5}, t{0.5, -3.0};
+    std::vector<Vector> vectors(2);
+    EXPECT_EQ(test::RefusalOf([&] { sampler.Evaluate(77, 0, s, s, vectors); }),
+              "face 77 does not exist; the surface has 6 faces, 0 to 5");
+    EXPECT_EQ(test::RefusalOf([&] { sampler.Evaluate(0, 1, s, s, vectors); }),
+              "domain 1 does not exist; face 0 has domains 0 to 0");
+    EXPECT_EQ(test::RefusalOf([&] { sampler.Evaluate(0, 0, s, t, vectors); }),
+              "place 1: (0.5, -3) lies outside domain 0 of face 0");
+    EXPECT_EQ(test::RefusalOf([&] { sampler.Evaluate(0, 0, s, s, std::span(vectors).first(1)); }),
+              "results: room for 1 is too little for 2 places");
 }
 
 }  // namespace

@@ -440,5 +440,20 @@ TEST(VertexCovectors, GradientsAreProjectedAxes) {
     }
 }
 
+TEST(VertexCovectors, WhatIsOutOfRangeIsRefused) {
+    auto const cube = test::MakeCube();
+    auto const refiner = test::MakeRefiner(cube, 0);
+    Values const form(12, 1.0), six(6);
+    EXPECT_EQ(test::RefusalOf([&] { eval::VertexCovectors(*refiner, 1); }),
+              "level 1 does not exist; levels are 0 to 0");
+    eval::VertexCovectors const covectors(*refiner, 0);
+    EXPECT_EQ(test::RefusalOf([&] { covectors.Find(8, form, cube.positions); }),
+              "vertex 8 does not exist; the level has 8 vertices, 0 to 7");
+    EXPECT_EQ(test::RefusalOf([&] { covectors.Find(0, six, cube.positions); }),
+              "form: 6 values are too few for 12 edges of 1");
+    EXPECT_EQ(test::RefusalOf([&] { covectors.Find(0, form, six); }),
+              "positions: 6 values are too few for 8 vertices of 3");
+}
+
 }  // namespace
 }  // namespace limn

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/stencils/place_stencils.h"
 
+#include <cmath>
 #include <random>
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 
 #include "far_ext/error.h"
 #include "far_ext/topology/refiner.h"
+#include "support/files.h"
 #include "support/meshes.h"
 
 namespace limn::eval {
@@ -124,6 +126,34 @@ TEST(PlaceStencils, WhatFloatCannotHoldIsRefused) {
     EXPECT_THROW(stencils.Evaluate(scene.positions, 1.0,
                                    StencilEvaluator(EvaluatorKind::Simd, stencils.MakeRows())),
                  Error);
+}
+
+TEST(PlaceStencils, APlaceThatDoesNotExistIsRefusedByItsNumber) {
+    auto const scene = test::MakeCube();
+    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    LimitSurface const surface(*refiner);
+    auto const refusalOf = [&](SurfacePlace const& place) {
+        return test::RefusalOf([&] { PlaceStencils(surface, {{0, 0, 0.5, 0.5}, place}); });
+    };
+    EXPECT_EQ(refusalOf({77, 0, 0.5, 0.5}),
+              "place 1: face 77 does not exist; the surface has 6 faces, 0 to 5");
+    EXPECT_EQ(refusalOf({5, 1, 0.5, 0.5}),
+              "place 1: domain 1 does not exist; face 5 has domains 0 to 0");
+    EXPECT_EQ(refusalOf({5, 0, 1.5, -3.0}), "place 1: (1.5, -3) lies outside domain 0 of face 5");
+    EXPECT_EQ(refusalOf({5, 0, 0.5, std::nan("")}),
+              "place 1: (0.5, nan) lies outside domain 0 of face 5");
+}
+
+TEST(PlaceStencils, PositionsThatAreTooShortAreRefused) {
+    auto const scene = test::MakeCube();
+    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    LimitSurface const surface(*refiner);
+    PlaceStencils const stencils(surface, {{0, 0, 0.5, 0.5}});
+    StencilEvaluator const evaluator(EvaluatorKind::Simd, stencils.MakeRows());
+    std::vector<double> const six(6);
+    std::string const message = "positions: 6 values are too few for 8 vertices of 3";
+    EXPECT_EQ(test::RefusalOf([&] { stencils.Evaluate(six, 1.0); }), message);
+    EXPECT_EQ(test::RefusalOf([&] { stencils.Evaluate(six, 1.0, evaluator); }), message);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <opensubdiv/bfr/surface.h>
 #include <opensubdiv/far/primvarRefiner.h>
 
-#include "eval/surface/face_places.h"
+#include "eval/surface/surface_place.h"
 #include "eval/surface/surface_sample.h"
 #include "far_ext/topology/refiner.h"
 #include "support/meshes.h"

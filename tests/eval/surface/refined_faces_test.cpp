@@ -6,6 +6,8 @@
 #include "engine/scene/refine.h"
 #include "eval/surface/surface_sample.h"
 #include "far_ext/topology/refiner.h"
+#include "support/files.h"
+#include "support/fit_meshes.h"
 #include "support/meshes.h"
 
 namespace limn {
@@ -42,7 +44,7 @@ TEST_P(RefinedFacesOf, TheRefinedCageHasTheSameLimitThere) {
             for (int domain = 0; domain < surface.GetNumDomains(face); ++domain) {
                 for (auto const& [s, t] :
                      {std::pair{0.21, 0.17}, {0.06, 0.9}, {0.55, 0.3}, {0.4, 0.38}}) {
-                    auto const place = faces.Find(face, domain, s, t);
+                    auto const place = faces.Find({face, domain, s, t});
                     ASSERT_LT(place.face, fineSurface.GetNumFaces());
                     ASSERT_TRUE(fineSurface.HasLimit(place.face));
                     fineTree.Bind(place.face);
@@ -59,6 +61,26 @@ TEST_P(RefinedFacesOf, TheRefinedCageHasTheSameLimitThere) {
         }
         EXPECT_GT(numPlaces, 0u);
     }
+}
+
+TEST(RefinedFaces, WhatIsOutOfRangeIsRefused) {
+    auto scene = test::MakePrism(5);  // pentagons below and above
+    scene.cage.holes = {2};
+    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    eval::RefinedFaces const faces(eval::LimitSurface(*refiner), 2);
+    std::vector<eval::RefinedFaces::Sample> samples;
+    std::vector<double> const s{0.5, 1.5}, t{0.5, -3.0};
+    EXPECT_EQ(test::RefusalOf([&] { faces.Find({77, 0, 0.5, 0.5}); }),
+              "face 77 does not exist; the surface has 7 faces, 0 to 6");
+    EXPECT_EQ(test::RefusalOf([&] { faces.Find({2, 0, 0.5, 0.5}); }), "face 2 has no limit");
+    EXPECT_EQ(test::RefusalOf([&] { faces.FindSorted(1, 5, s, t, samples); }),
+              "domain 5 does not exist; face 1 has domains 0 to 4");
+    EXPECT_EQ(test::RefusalOf([&] { faces.Find({1, 2, 1.5, -3.0}); }),
+              "(1.5, -3) lies outside domain 2 of face 1");
+    EXPECT_EQ(test::RefusalOf([&] { faces.FindSorted(1, 2, s, t, samples); }),
+              "place 1: (1.5, -3) lies outside domain 2 of face 1");
+    EXPECT_EQ(test::RefusalOf([&] { faces.FindSorted(1, 2, s, std::span(t).first(1), samples); }),
+              "places: 2 values of s and 1 of t; each has one of both");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "eval/kernels/instruction_set.h"
 #include "far_ext/topology/refiner.h"
+#include "support/files.h"
 #include "support/meshes.h"
 
 namespace limn {
@@ -177,6 +178,34 @@ TEST_P(SurfaceSamplerOnMesh, CurvaturesBelongTogether) {
         ASSERT_NEAR(dn, 0.0, 1e-4);
         ASSERT_NEAR(dd, 1.0, 1e-4);
     }
+}
+
+TEST(SurfaceSampler, WhatIsOutOfRangeIsRefused) {
+    auto const cube = test::MakeCube();
+    auto const refiner = far_ext::CreateRefiner(cube.cage);
+    LimitSurface const surface(*refiner);
+    FaceTree tree(surface, cube.positions, 3);
+    SurfaceSampler sampler(tree, Quantity::Curvature, 1.0f);
+    EXPECT_EQ(test::RefusalOf([&] { sampler.Bind(77); }),
+              "face 77 does not exist; the surface has 6 faces, 0 to 5");
+    sampler.Bind(3);
+    std::vector<double> const s{0.5, 1.5}, t{0.5, -3.0};
+    auto const visit = [](auto const&, auto*, size_t) { ADD_FAILURE() << "a sample was visited"; };
+    EXPECT_EQ(test::RefusalOf([&] { sampler.Evaluate(1, s, s, visit); }),
+              "domain 1 does not exist; face 3 has domains 0 to 0");
+    EXPECT_EQ(test::RefusalOf([&] { sampler.Evaluate(0, s, t, visit); }),
+              "place 1: (1.5, -3) lies outside domain 0 of face 3");
+    EXPECT_EQ(test::RefusalOf([&] { sampler.Evaluate(0, s, std::span(t).first(1), visit); }),
+              "places: 2 values of s and 1 of t; each has one of both");
+}
+
+TEST(SurfaceSampler, ATreeWithoutPositionsIsRefused) {
+    auto const torus = test::MakeTorus(4, 3);
+    auto const refiner = far_ext::CreateRefiner(torus.cage);
+    LimitSurface const surface(*refiner, 0);
+    FaceTree tree(surface, torus.uvs, 2);
+    EXPECT_EQ(test::RefusalOf([&] { SurfaceSampler(tree, Quantity::Position, 1.0f); }),
+              "channel 2 does not exist; the tree has 2");
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, SurfaceSamplerOnMesh,

@@ -10,7 +10,7 @@
 #include <opensubdiv/far/stencilTableFactory.h>
 #include <opensubdiv/osd/cpuEvaluator.h>
 
-#include "eval/surface/face_places.h"
+#include "eval/surface/surface_place.h"
 #include "eval/surface/surface_sample.h"
 #include "far_ext/topology/refiner.h"
 #include "support/files.h"

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "eval/surface/surface_place.h"
+
+#include <string>
+
+#include <fmt/format.h>
+
+#include "far_ext/error.h"
+
+namespace limn::eval {
+
+namespace {
+
+// What is wrong, or nothing.
+
+std::string FindFault(Index face, Index numFaces) {
+    if (face >= 0 && face < numFaces) return {};
+    return fmt::format("face {} does not exist; the surface has {} faces, 0 to {}", face, numFaces,
+                       numFaces - 1);
+}
+
+std::string FindFault(Index face, int domain, int numDomains) {
+    if (numDomains == 0) return fmt::format("face {} has no limit", face);
+    if (domain >= 0 && domain < numDomains) return {};
+    return fmt::format("domain {} does not exist; face {} has domains 0 to {}", domain, face,
+                       numDomains - 1);
+}
+
+bool IsInDomain(bool isLoop, double s, double t) {
+    constexpr double kLow = -kPlaceSlack, kHigh = 1.0 + kPlaceSlack;
+    bool const isLow = isLoop ? s + t <= kHigh : (s <= kHigh) & (t <= kHigh);
+    return (s >= kLow) & (t >= kLow) & isLow;
+}
+
+std::string FindFault(bool isLoop, SurfacePlace const& place) {
+    if (IsInDomain(isLoop, place.s, place.t)) return {};
+    return fmt::format("({}, {}) lies outside domain {} of face {}", place.s, place.t, place.domain,
+                       place.face);
+}
+
+void Refuse(std::string const& fault) {
+    if (!fault.empty()) throw Error(ErrorCode::BadOption, fault);
+}
+
+void Refuse(size_t place, std::string const& fault) {
+    if (!fault.empty()) Refuse(fmt::format("place {}: {}", place, fault));
+}
+
+}  // namespace
+
+int GetChildAt(bool isLoop, double& s, double& t) {
+    if (isLoop) {
+        int child = 0;
+        if (s >= 0.5)
+            child = 1;
+        else if (t >= 0.5)
+            child = 2;
+        else if (s + t > 0.5)
+            child = 3;
+        s = child == 3 ? 1.0 - 2.0 * s : 2.0 * s - (child == 1);
+        t = child == 3 ? 1.0 - 2.0 * t : 2.0 * t - (child == 2);
+        return child;
+    }
+    int const i = s >= 0.5, j = t >= 0.5;
+    s = 2.0 * s - i;
+    t = 2.0 * t - j;
+    return j ? 3 - i : i;
+}
+
+void CheckFace(Index face, Index numFaces) {
+    Refuse(FindFault(face, numFaces));
+}
+
+void CheckFace(LimitSurface const& surface, Index face) {
+    CheckFace(face, surface.GetNumFaces());
+    CheckDomain(face, 0, surface.HasLimit(face) ? surface.GetNumDomains(face) : 0);
+}
+
+void CheckDomain(Index face, int domain, int numDomains) {
+    Refuse(FindFault(face, domain, numDomains));
+}
+
+void CheckInDomain(bool isLoop, SurfacePlace const& place) {
+    Refuse(FindFault(isLoop, place));
+}
+
+void CheckInDomain(bool isLoop, Index face, int domain, std::span<double const> s,
+                   std::span<double const> t) {
+    if (s.size() != t.size())
+        Refuse(fmt::format("places: {} values of s and {} of t; each has one of both", s.size(),
+                           t.size()));
+    bool areAll = true;
+    for (size_t i = 0; i < s.size(); ++i) areAll &= IsInDomain(isLoop, s[i], t[i]);
+    if (areAll) return;
+    for (size_t i = 0; i < s.size(); ++i)
+        Refuse(i, FindFault(isLoop, SurfacePlace{face, domain, s[i], t[i]}));
+}
+
+void CheckPlaces(LimitSurface const& surface, std::span<SurfacePlace const> places) {
+    for (size_t i = 0; i < places.size(); ++i) {
+        SurfacePlace const& place = places[i];
+        Refuse(i, FindFault(place.face, surface.GetNumFaces()));
+        Refuse(i, FindFault(place.face, place.domain, surface.GetNumDomains(place.face)));
+        Refuse(i, FindFault(surface.IsLoop(), place));
+    }
+}
+
+void CheckRoom(size_t numResults, size_t numPlaces) {
+    if (numResults < numPlaces)
+        Refuse(
+            fmt::format("results: room for {} is too little for {} places", numResults, numPlaces));
+}
+
+}  // namespace limn::eval
