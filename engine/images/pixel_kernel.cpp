@@ -17,6 +17,7 @@ size_t ConvertToHalf(float const* from, size_t fromStride, uint16_t* to, size_t 
             uint32_t const bits = __builtin_bit_cast(uint32_t, from[i]);
             uint32_t const sign = (bits >> 16) & 0x8000u;
             uint32_t magnitude = bits & 0x7fffffffu;
+            // No pixel is infinite: what half cannot hold becomes its largest number [Bake 4].
             bool const isBeyond = magnitude > 0x477fe000u;  // 65504
             numClamped += isBeyond ? 1u : 0u;
             magnitude = isBeyond ? 0x477fe000u : magnitude;
@@ -34,6 +35,8 @@ size_t ConvertToHalf(float const* from, size_t fromStride, uint16_t* to, size_t 
     return total;
 }
 
+// A key is the squared distance with dy and dx below it, so that the least key is the nearest texel
+// and, of equals, the upper, then the left one: ties need no comparison of their own [Bake 7].
 void FindNearest(int32_t const* dy, int32_t* best, size_t count, int radius) {
     for (int dx = -radius; dx <= radius; ++dx) {
         int32_t const* const from = dy + dx;
@@ -45,6 +48,7 @@ void FindNearest(int32_t const* dy, int32_t* best, size_t count, int radius) {
     }
 }
 
+// Least and largest do not depend on the order, so that sixteen may be sought at once [Limit 11].
 void FindRange(float const* values, uint8_t const* covered, size_t count, float* low, float* high) {
     constexpr size_t kLanes = 16;
     typedef float Lanes __attribute__((vector_size(4 * kLanes)));

@@ -136,7 +136,8 @@ constexpr double GetLeastArea(double) {
     return __DBL_MIN__;
 }
 
-/// The triangles round one row, or kLanes of them.
+/// The triangles round one row, or kLanes of them: each adds to -L of its two spokes a_T cot / 2 of
+/// the angle opposite, and to the area [Cascade 3].
 template <class Scalar, class L, bool IsLocal>
 class Fan {
 public:
@@ -147,7 +148,7 @@ public:
     /// The triangle of the middle and spokes i and j; `share` is half of its weight.
     inline void Add(Spoke<L> const& a, Spoke<L> const& b, int i, int j, Scalar share) {
         L const ab = Dot(a, b);
-        // Not from squares and dot products, whose difference cancels at slivers.
+        // Not from squares and dot products, whose difference cancels at slivers [Cascade 3].
         L const x = a.y * b.z - a.z * b.y, y = a.z * b.x - a.x * b.z, z = a.x * b.y - a.y * b.x;
         L const cross = Sqrt((x * x + y * y) + z * z);
         // The bound is half of the sum of the squared edges: the same from all three corners, so
@@ -166,7 +167,8 @@ public:
     L const& GetArea() const { return _area; }
 
 private:
-    /// The mean of sigma^2 / 2 of a linear sigma.
+    /// The mean of sigma^2 / 2 of a linear sigma: exact, so that a triangle's children have the
+    /// same mean [Cascade 3].
     inline L FindDiffusion(Spoke<L> const& a, Spoke<L> const& b) const {
         if constexpr (!IsLocal) return L{} + _diffusion;
         L const& h = _own.width;
@@ -200,6 +202,8 @@ inline L BuildRing(Row<L> const& own, Scalar diffusion, int faceSize, int size, 
         if (step == 1) {
             fan.Add(here, there, k, next, Scalar(0.5));
         } else {
+            // A quad is both pairs of triangles that its diagonals make, half each; of the pair
+            // that does not part this corner, one triangle is here [Cascade 3].
             Spoke<L> const diagonal(own, load(k + 1));
             fan.Add(here, diagonal, k, k + 1, Scalar(0.25));
             fan.Add(diagonal, there, k + 1, next, Scalar(0.25));
@@ -210,7 +214,8 @@ inline L BuildRing(Row<L> const& own, Scalar diffusion, int faceSize, int size, 
     return fan.GetArea();
 }
 
-/// The diagonal's entry; 0 where nothing moves the row.
+/// The diagonal's entry; 0 where nothing moves the row: such rows keep X0 to the bit,
+/// which the equation would give but for rounding [Cascade 3].
 template <class L>
 inline L FindDiagonal(L const* weights, int size, L const& mass) {
     L sum{}, absolute{};
@@ -236,7 +241,8 @@ inline void BuildSurfaceRow(CascadeBuildJob<Scalar> const& job, Index row,
     job.diagonals[row] = FindDiagonal(weights, size, job.masses[row]);
 }
 
-/// A row on a crease: its two neighbours along it.
+/// A row on a crease: its two neighbours along it. The same filter on a curve, mass by length
+/// [Cascade 3].
 template <class Scalar, bool IsLocal>
 inline void BuildCreaseRow(CascadeBuildJob<Scalar> const& job, Index row) {
     int const begin = job.rings.offsets[row], end = job.rings.offsets[row + 1];
@@ -327,13 +333,14 @@ CascadeShapes<Scalar> BuildRows(CascadeBuildJob<Scalar> const& job, Index begin,
 
 // -------- sweeps
 
-/// The sum over a ring of edge times difference. \tparam Size  of the ring, or 0 where it is not
-/// known
+/// The sum over a ring of edge times difference: -L X, since rows of L add up to 0, and without the
+/// cancellation of large terms. \tparam Size  of the ring, or 0 where it is not known
 template <int Size, class Scalar>
 inline Point<Scalar> SumRing(Scalar const* x, Point<Scalar> const& own, Index const* neighbours,
                              Scalar const* edges, int size, Point<Scalar> even) {
     int const count = Size ? Size : size;
-    Point<Scalar> odd{};  // two sums at once: an addition takes several cycles
+    // Two sums at once, at every width [Limit 11]: an addition takes several cycles.
+    Point<Scalar> odd{};
     auto const get = [&](int k) {
         return edges[k] * (Load<Point<Scalar>>(x + 4 * static_cast<long>(neighbours[k])) - own);
     };

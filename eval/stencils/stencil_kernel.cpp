@@ -66,6 +66,9 @@ inline void ForEachComponents(int length, Visit visit) {
 
 // -------- single rows
 
+/// Even entries and odd ones, then both: two sums at once, in an order that is the row's alone
+/// [Limit 11].
+///
 /// \tparam Stride  of the source, or 0 where it is not known: multiplying takes time
 /// \tparam Size    number of weights, or 0 where it is not known: so few are better unrolled
 template <int C, int Stride, int Size>
@@ -134,7 +137,8 @@ void EvaluateRows(StencilJob const& job, StencilRowArrays const& rows, Index fir
 
 // -------- groups
 
-/// Where the rows of a group go, one stretch after another.
+/// Where the rows of a group go, one stretch after another: a face's points are few runs of the
+/// table's rows (inside, along each edge, at corners).
 class RowCursor {
 public:
     RowCursor(int const* lengths, Index const* starts) : _lengths(lengths), _starts(starts) {}
@@ -161,8 +165,9 @@ private:
     int _used = 0;
 };
 
-/// N registers of rows times C components: sums over all columns. Register n's weights start at
-/// weights + n * step, column j's lie j * kRows further.
+/// N registers of rows times C components: sums over all columns. Lanes are rows, a column is one
+/// point for all of them: no sum crosses lanes [Limit 11]. Register n's weights start at weights +
+/// n * step, column j's lie j * kRows further.
 template <int C, int N>
 inline void SumColumns(float const* weights, std::ptrdiff_t step, int numColumns,
                        float const* points, float* sums /* [C][N * kLanes] */) {
@@ -268,7 +273,7 @@ inline void EvaluateSlice(StencilSource const& source, Index const* indices, flo
 }
 
 /// Four components of all rows at once. A row alone would wait for each of its additions; eight run
-/// side by side.
+/// side by side, each still entry after entry [Limit 11].
 template <bool IsUnitStride>
 inline void EvaluateSliceOfPoints(StencilSource const& source, Index const* indices,
                                   float const* weights, std::size_t size, Point* sums) {

@@ -83,7 +83,8 @@ inline void MapOf(double const* c, Lanes x, Lanes y, Lanes& f, Lanes& fx, Lanes&
         QuadMap(c, x, y, f, fx, fy);
 }
 
-/// A Newton step towards the target: how far off (x, y) is, squared, and where to go.
+/// A Newton step towards the target: how far off (x, y) is, squared, and where to go. Without an
+/// inverse Jacobian it stays, and the texel is left to a search that needs none [Bake 2].
 struct NewtonStep {
     Lanes residual, dx, dy;
     Mask isRegular;
@@ -113,7 +114,7 @@ constexpr double kChebyshev[4][4] = {
     {0.70710678118654752, -0.70710678118654752, -0.70710678118654752, 0.70710678118654752},
     {-0.38268343236508977, 0.92387953251128674, -0.92387953251128674, 0.38268343236508977}};
 
-/// From sums over T_0 .. T_3 to powers, `stride` apart.
+/// From sums over T_0 .. T_3 to powers, `stride` apart: fitted once, evaluated for every texel.
 inline void ToPowers(double* c, int stride) {
     double const c0 = c[0], c1 = c[stride], c2 = c[2 * stride], c3 = c[3 * stride];
     c[0] = c0 - c2;
@@ -157,7 +158,8 @@ inline Lanes EvaluateCubic(double const* c, Lanes a, Lanes b) {
 
 template <bool IsTriangle>
 void Fit(InversionCell& cell) {
-    // Without a fit: the linear part in the cell's own scale.
+    // Without a fit: the linear part in the cell's own scale. A fit pays from some dozens of texels
+    // on [Bake 2].
     for (int k = 0; k < 2; ++k) {
         for (double& c : cell.guess[k]) c = 0.0;
     }
@@ -211,7 +213,8 @@ template <bool IsTriangle>
 void Invert(InversionCell const& cell, double const* targetX, double const* targetY, int count,
             double* outX, double* outY, Whereabouts* where) {
     // A step from r texels off ends within bend / 2 r^2; the factor covers the Jacobian's change on
-    // the way.
+    // the way. So a step that begins near enough is the last, and its end need not be looked at
+    // [Bake 2].
     constexpr double kSafety = 4.0;
     double const ofBend = 2.0 * kInversionEnd / (kSafety * cell.bend);
     double const lastStep = ofBend < 1e-2 ? (ofBend > 1e-8 ? ofBend : 1e-8) : 1e-2;  // squared

@@ -24,7 +24,9 @@ constexpr Real kTiny = sizeof(Real) == 4 ? Real(1e-30) : Real(1e-200);
 template <class Real>
 constexpr Real kHuge = 1 / kTiny<Real>;
 
-/// Values and derivatives of `length` bicubic polynomials for one block of lanes.
+/// Values and derivatives of `length` bicubic polynomials for one block of lanes: Horner's scheme,
+/// whose partial sums are the derivatives. Powers about the piece's centre keep the digits of
+/// second derivatives, which sums of a B-spline lose [Limit 9].
 template <int Order, class Real>
 inline void EvaluateQuads(Real const* coefficients, Real const* x, Real const* y, Real (*p)[W],
                           Real (*ps)[W], Real (*pt)[W], Real (*pss)[W], Real (*pst)[W],
@@ -138,7 +140,8 @@ void EvaluateAs(SurfaceBatch<Real> const& batch) {
                 Real const ss = (ps[0][l] * ps[0][l] + ps[1][l] * ps[1][l]) + ps[2][l] * ps[2][l];
                 Real const st = (ps[0][l] * pt[0][l] + ps[1][l] * pt[1][l]) + ps[2][l] * pt[2][l];
                 Real const tt = (pt[0][l] * pt[0][l] + pt[1][l] * pt[1][l]) + pt[2][l] * pt[2][l];
-                // Also true where a square under- or overflows, and for a lane that is no number.
+                // No plane, no normal: such a lane is done again in double [Bake 4]. Also where a
+                // square under- or overflows, and for a lane that is no number.
                 bool const isSafe = nn >= Real(1e-10) * ss * tt && nn > kTiny<Real> &&
                                     nn < kHuge<Real> && ss > kTiny<Real>;
                 degenerate[l] = isSafe ? 0u : 1u;
@@ -163,6 +166,7 @@ void EvaluateAs(SurfaceBatch<Real> const& batch) {
                     Real const e = -((nx * pss[0][l] + ny * pss[1][l]) + nz * pss[2][l]);
                     Real const f = -((nx * pst[0][l] + ny * pst[1][l]) + nz * pst[2][l]);
                     Real const g = -((nx * ptt[0][l] + ny * ptt[1][l]) + nz * ptt[2][l]);
+                    // The signs that make a sphere positive, seen from outside [Bake 3].
                     // With p = |x_s|, q = x_t.a1, r = x_t.a2: p p = ss, q p = st, r p = root.
                     Real const qp = st / ssSafe;  // q / p
                     Real const w11 = orientation * (e / ssSafe);
@@ -170,6 +174,8 @@ void EvaluateAs(SurfaceBatch<Real> const& batch) {
                     Real const w22 = orientation *
                                      (((g - Real(2) * f * qp) + e * (qp * qp)) * (ssSafe / nnSafe));
                     Real const mean = Real(0.5) * (w11 + w22), half = Real(0.5) * (w11 - w22);
+                    // Half of k1 - k2 as a length: the root of H^2 - K would lose half of the
+                    // digits near umbilics.
                     Real const D = SquareRoot(half * half + w12 * w12);
                     out[kMean * stride + l] = static_cast<float>(mean);
                     out[kGaussian * stride + l] = static_cast<float>(w11 * w22 - w12 * w12);
