@@ -111,101 +111,161 @@ inline void EvaluateTriangles(Real const* coefficients, Real const* x, Real cons
     }
 }
 
+/// Values and derivatives of a block of lanes, per coordinate.
+template <class Real>
+struct Lanes {
+    alignas(64) Real p[3][W], ps[3][W], pt[3][W], pss[3][W], pst[3][W], ptt[3][W];
+};
+
+template <class Real>
+inline Real Dot(Real const (&a)[3][W], Real const (&b)[3][W], int l) {
+    return (a[0][l] * b[0][l] + a[1][l] * b[1][l]) + a[2][l] * b[2][l];
+}
+
+/// The tangent plane of a lane: its unit normal and the first fundamental form, made safe to divide
+/// by.
+template <class Real>
+struct Frame {
+    Real nx, ny, nz;
+    Real nn, root;  ///< squared length of x_s x x_t, and its length
+    Real ss, st;    ///< x_s.x_s, x_s.x_t
+    bool isSafe;
+};
+
+template <class Real>
+inline Frame<Real> FindFrame(Lanes<Real> const& v, int l) {
+    auto const& [p, ps, pt, pss, pst, ptt] = v;
+    Frame<Real> frame;
+    Real const nx = ps[1][l] * pt[2][l] - ps[2][l] * pt[1][l];
+    Real const ny = ps[2][l] * pt[0][l] - ps[0][l] * pt[2][l];
+    Real const nz = ps[0][l] * pt[1][l] - ps[1][l] * pt[0][l];
+    Real const nn = (nx * nx + ny * ny) + nz * nz;
+    Real const ss = Dot(ps, ps, l), tt = Dot(pt, pt, l);
+    frame.st = Dot(ps, pt, l);
+    // No plane, no normal: such a lane is done again in double [Bake 4]. Also where a square under-
+    // or overflows, and for a lane that is no number.
+    bool const isSafe =
+        nn >= Real(1e-10) * ss * tt && nn > kTiny<Real> && nn < kHuge<Real> && ss > kTiny<Real>;
+    frame.isSafe = isSafe;
+    frame.nn = isSafe ? nn : Real(1);
+    frame.ss = isSafe ? ss : Real(1);
+    frame.root = SquareRoot(frame.nn);
+    Real const toUnit = Real(1) / frame.root;
+    frame.nx = isSafe ? nx * toUnit : Real(0);
+    frame.ny = isSafe ? ny * toUnit : Real(0);
+    frame.nz = isSafe ? nz * toUnit : Real(0);
+    return frame;
+}
+
+/// The shape operator of a lane in the frame a1 along x_s, a2 = n x a1.
+template <class Real>
+struct Shape {
+    Real w11, w12, w22;
+    Real mean, half;  ///< (w11 + w22) / 2, (w11 - w22) / 2
+    Real deviation;   ///< of the principal curvatures from their mean
+};
+
+template <class Real>
+inline Shape<Real> FindShape(Lanes<Real> const& v, Frame<Real> const& frame, Real orientation,
+                             int l) {
+    auto const& [p, ps, pt, pss, pst, ptt] = v;
+    Shape<Real> shape;
+    // The signs that make a sphere positive, seen from outside [Bake 3].
+    Real const e = -((frame.nx * pss[0][l] + frame.ny * pss[1][l]) + frame.nz * pss[2][l]);
+    Real const f = -((frame.nx * pst[0][l] + frame.ny * pst[1][l]) + frame.nz * pst[2][l]);
+    Real const g = -((frame.nx * ptt[0][l] + frame.ny * ptt[1][l]) + frame.nz * ptt[2][l]);
+    // With p = |x_s|, q = x_t.a1, r = x_t.a2: p p = ss, q p = st, r p = root.
+    Real const qp = frame.st / frame.ss;  // q / p
+    shape.w11 = orientation * (e / frame.ss);
+    shape.w12 = orientation * ((f - e * qp) / frame.root);
+    shape.w22 = orientation * (((g - Real(2) * f * qp) + e * (qp * qp)) * (frame.ss / frame.nn));
+    shape.mean = Real(0.5) * (shape.w11 + shape.w22);
+    shape.half = Real(0.5) * (shape.w11 - shape.w22);
+    // Half of k1 - k2 as a length: the root of H^2 - K would lose half of the digits near umbilics.
+    shape.deviation = SquareRoot(shape.half * shape.half + shape.w12 * shape.w12);
+    return shape;
+}
+
+/// out[c * stride] = value of c for three channels.
+template <class Real>
+inline void PutThree(float* out, size_t stride, Real x, Real y, Real z) {
+    out[0] = static_cast<float>(x);
+    out[stride] = static_cast<float>(y);
+    out[2 * stride] = static_cast<float>(z);
+}
+
+/// The direction of k1.
+template <class Real>
+inline void PutDirection(Lanes<Real> const& v, Frame<Real> const& frame, Shape<Real> const& shape,
+                         float* out, size_t stride, int l) {
+    Real const m1 = shape.w11 < Real(0) ? -shape.w11 : shape.w11,
+               m2 = shape.w22 < Real(0) ? -shape.w22 : shape.w22;
+    bool const isUmbilic = shape.deviation <= Real(1e-5) * (m1 > m2 ? m1 : m2);
+    Real const safe = isUmbilic ? Real(1) : shape.deviation;
+    // Half of the angle with cosine c and sine s; the larger half first.
+    Real const c = shape.half / safe, s = shape.w12 / safe;
+    Real const ac = c < Real(0) ? -c : c, as = s < Real(0) ? -s : s;
+    Real const large = SquareRoot(Real(0.5) * (Real(1) + ac));
+    Real const small = Real(0.5) * as / large;
+    Real const cosine = c >= Real(0) ? large : small;
+    Real const sine = c >= Real(0) ? small : large;
+    Real const along = isUmbilic ? Real(1) : cosine;
+    Real const across = isUmbilic ? Real(0) : (s < Real(0) ? -sine : sine);
+    Real const ip = Real(1) / SquareRoot(frame.ss);
+    Real const ax = v.ps[0][l] * ip, ay = v.ps[1][l] * ip, az = v.ps[2][l] * ip;
+    Real const bx = frame.ny * az - frame.nz * ay, by = frame.nz * ax - frame.nx * az,
+               bz = frame.nx * ay - frame.ny * ax;
+    PutThree(out + kDirectionX * stride, stride, along * ax + across * bx, along * ay + across * by,
+             along * az + across * bz);
+}
+
+/// All channels of the quantity but the position, of one lane.
+template <Quantity Q, class Real>
+inline void PutLane(Lanes<Real> const& v, Real orientation, Real scale, float* out, size_t stride,
+                    unsigned* degenerate, int l) {
+    Frame<Real> const frame = FindFrame(v, l);
+    *degenerate = frame.isSafe ? 0u : 1u;
+    PutThree(out + kNormalX * stride, stride, frame.nx * orientation, frame.ny * orientation,
+             frame.nz * orientation);
+    if constexpr (Q == Quantity::Tangents) {
+        PutThree(out + kTangentSX * stride, stride, v.ps[0][l] * scale, v.ps[1][l] * scale,
+                 v.ps[2][l] * scale);
+        PutThree(out + kTangentTX * stride, stride, v.pt[0][l] * scale, v.pt[1][l] * scale,
+                 v.pt[2][l] * scale);
+    }
+    if constexpr (Q >= Quantity::Curvature) {
+        Shape<Real> const shape = FindShape(v, frame, orientation, l);
+        out[kMean * stride] = static_cast<float>(shape.mean);
+        out[kGaussian * stride] = static_cast<float>(shape.w11 * shape.w22 - shape.w12 * shape.w12);
+        out[kK1 * stride] = static_cast<float>(shape.mean + shape.deviation);
+        out[kK2 * stride] = static_cast<float>(shape.mean - shape.deviation);
+        if constexpr (Q >= Quantity::Direction) PutDirection(v, frame, shape, out, stride, l);
+    }
+}
+
 template <Quantity Q, bool IsTriangle, class Real>
 void EvaluateAs(SurfaceBatch<Real> const& batch) {
     constexpr int Order = Q == Quantity::Position ? 0 : Q == Quantity::Normal ? 1 : 2;
-    alignas(64) Real p[3][W], ps[3][W], pt[3][W], pss[3][W], pst[3][W], ptt[3][W];
+    Lanes<Real> v;
     size_t const stride = batch.stride;
     Real const orientation = batch.orientation, scale = batch.scale;
     for (int i = 0; i < batch.count; i += W) {
         if constexpr (IsTriangle) {
-            EvaluateTriangles<Order>(batch.coefficients, batch.x + i, batch.y + i, p, ps, pt, pss,
-                                     pst, ptt);
+            EvaluateTriangles<Order>(batch.coefficients, batch.x + i, batch.y + i, v.p, v.ps, v.pt,
+                                     v.pss, v.pst, v.ptt);
         } else {
-            EvaluateQuads<Order>(batch.coefficients, batch.x + i, batch.y + i, p, ps, pt, pss, pst,
-                                 ptt);
+            EvaluateQuads<Order>(batch.coefficients, batch.x + i, batch.y + i, v.p, v.ps, v.pt,
+                                 v.pss, v.pst, v.ptt);
         }
         float* const out = batch.out + i;
         for (int d = 0; d < 3; ++d) {
-            for (int l = 0; l < W; ++l) out[d * stride + l] = static_cast<float>(p[d][l]);
+            for (int l = 0; l < W; ++l) out[d * stride + l] = static_cast<float>(v.p[d][l]);
         }
         if constexpr (Order > 0) {
             unsigned* const degenerate = batch.degenerate + i;
 #pragma GCC ivdep
             for (int l = 0; l < W; ++l) {
-                Real nx = ps[1][l] * pt[2][l] - ps[2][l] * pt[1][l];
-                Real ny = ps[2][l] * pt[0][l] - ps[0][l] * pt[2][l];
-                Real nz = ps[0][l] * pt[1][l] - ps[1][l] * pt[0][l];
-                Real const nn = (nx * nx + ny * ny) + nz * nz;
-                Real const ss = (ps[0][l] * ps[0][l] + ps[1][l] * ps[1][l]) + ps[2][l] * ps[2][l];
-                Real const st = (ps[0][l] * pt[0][l] + ps[1][l] * pt[1][l]) + ps[2][l] * pt[2][l];
-                Real const tt = (pt[0][l] * pt[0][l] + pt[1][l] * pt[1][l]) + pt[2][l] * pt[2][l];
-                // No plane, no normal: such a lane is done again in double [Bake 4]. Also where a
-                // square under- or overflows, and for a lane that is no number.
-                bool const isSafe = nn >= Real(1e-10) * ss * tt && nn > kTiny<Real> &&
-                                    nn < kHuge<Real> && ss > kTiny<Real>;
-                degenerate[l] = isSafe ? 0u : 1u;
-                Real const nnSafe = isSafe ? nn : Real(1), ssSafe = isSafe ? ss : Real(1);
-                Real const root = SquareRoot(nnSafe);
-                Real const toUnit = Real(1) / root;
-                nx = isSafe ? nx * toUnit : Real(0);
-                ny = isSafe ? ny * toUnit : Real(0);
-                nz = isSafe ? nz * toUnit : Real(0);
-                out[kNormalX * stride + l] = static_cast<float>(nx * orientation);
-                out[kNormalY * stride + l] = static_cast<float>(ny * orientation);
-                out[kNormalZ * stride + l] = static_cast<float>(nz * orientation);
-                if constexpr (Q == Quantity::Tangents) {
-                    out[kTangentSX * stride + l] = static_cast<float>(ps[0][l] * scale);
-                    out[kTangentSY * stride + l] = static_cast<float>(ps[1][l] * scale);
-                    out[kTangentSZ * stride + l] = static_cast<float>(ps[2][l] * scale);
-                    out[kTangentTX * stride + l] = static_cast<float>(pt[0][l] * scale);
-                    out[kTangentTY * stride + l] = static_cast<float>(pt[1][l] * scale);
-                    out[kTangentTZ * stride + l] = static_cast<float>(pt[2][l] * scale);
-                }
-                if constexpr (Order > 1) {
-                    Real const e = -((nx * pss[0][l] + ny * pss[1][l]) + nz * pss[2][l]);
-                    Real const f = -((nx * pst[0][l] + ny * pst[1][l]) + nz * pst[2][l]);
-                    Real const g = -((nx * ptt[0][l] + ny * ptt[1][l]) + nz * ptt[2][l]);
-                    // The signs that make a sphere positive, seen from outside [Bake 3].
-                    // With p = |x_s|, q = x_t.a1, r = x_t.a2: p p = ss, q p = st, r p = root.
-                    Real const qp = st / ssSafe;  // q / p
-                    Real const w11 = orientation * (e / ssSafe);
-                    Real const w12 = orientation * ((f - e * qp) / root);
-                    Real const w22 = orientation *
-                                     (((g - Real(2) * f * qp) + e * (qp * qp)) * (ssSafe / nnSafe));
-                    Real const mean = Real(0.5) * (w11 + w22), half = Real(0.5) * (w11 - w22);
-                    // Half of k1 - k2 as a length: the root of H^2 - K would lose half of the
-                    // digits near umbilics.
-                    Real const D = SquareRoot(half * half + w12 * w12);
-                    out[kMean * stride + l] = static_cast<float>(mean);
-                    out[kGaussian * stride + l] = static_cast<float>(w11 * w22 - w12 * w12);
-                    out[kK1 * stride + l] = static_cast<float>(mean + D);
-                    out[kK2 * stride + l] = static_cast<float>(mean - D);
-                    if constexpr (Q >= Quantity::Direction) {
-                        Real const m1 = w11 < Real(0) ? -w11 : w11, m2 = w22 < Real(0) ? -w22 : w22;
-                        bool const isUmbilic = D <= Real(1e-5) * (m1 > m2 ? m1 : m2);
-                        Real const Dsafe = isUmbilic ? Real(1) : D;
-                        // Half of the angle with cosine c and sine s; the larger half first.
-                        Real const c = half / Dsafe, s = w12 / Dsafe;
-                        Real const ac = c < Real(0) ? -c : c, as = s < Real(0) ? -s : s;
-                        Real const large = SquareRoot(Real(0.5) * (Real(1) + ac));
-                        Real const small = Real(0.5) * as / large;
-                        Real const cosine = c >= Real(0) ? large : small;
-                        Real const sine = c >= Real(0) ? small : large;
-                        Real const along = isUmbilic ? Real(1) : cosine;
-                        Real const across = isUmbilic ? Real(0) : (s < Real(0) ? -sine : sine);
-                        Real const ip = Real(1) / SquareRoot(ssSafe);
-                        Real const ax = ps[0][l] * ip, ay = ps[1][l] * ip, az = ps[2][l] * ip;
-                        Real const bx = ny * az - nz * ay, by = nz * ax - nx * az,
-                                   bz = nx * ay - ny * ax;
-                        out[kDirectionX * stride + l] =
-                            static_cast<float>(along * ax + across * bx);
-                        out[kDirectionY * stride + l] =
-                            static_cast<float>(along * ay + across * by);
-                        out[kDirectionZ * stride + l] =
-                            static_cast<float>(along * az + across * bz);
-                    }
-                }
+                PutLane<Q>(v, orientation, scale, out + l, stride, degenerate + l, l);
             }
         }
     }
