@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/cli/option_names.h"
 #include "engine/cli/signals.h"
 
 namespace limn::cli {
@@ -63,7 +64,7 @@ void Console::Show(Progress const& progress) {
 void Console::OnWarning(std::string const& message) {
     if (_isLineOpen) fmt::print(stderr, "\n");
     _isLineOpen = false;
-    fmt::print(stderr, "limn: warning: {}\n", message);
+    fmt::print(stderr, "limn: warning: {}\n", NameFlags(message));
 }
 
 }  // namespace limn::cli

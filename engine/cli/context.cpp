@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "engine/cli/cli.h"
+#include "engine/cli/option_names.h"
 #include "engine/io/file.h"
 #include "engine/io/mesh_reader.h"
 #include "engine/scene/mesh_info.h"
@@ -103,7 +104,8 @@ void PrintData(std::string const& text) {
 
 void Context::WriteReport() {
     if (_common.reportPath.empty()) return;
-    _report["warnings"] = _job.GetWarnings();
+    auto& warnings = _report["warnings"] = nlohmann::json::array();
+    for (std::string const& warning : _job.GetWarnings()) warnings.push_back(NameFlags(warning));
     std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - _start;
     _report["seconds"] = std::round(elapsed.count() * 1e3) / 1e3;
     std::string const text =

@@ -9,6 +9,7 @@
 #include <tbb/task_arena.h>
 
 #include "engine/cli/cli.h"
+#include "engine/cli/option_names.h"
 #include "engine/cli/signals.h"
 #include "far_ext/error.h"
 
@@ -121,7 +122,7 @@ int main(int argc, char** argv) {
     } catch (limn::engine::Stopped const&) {
         return Fail(128 + GetSignal(), "interrupted; nothing half-written is left");
     } catch (Error const& error) {
-        return Fail(ToExitStatus(error.GetCode()), error.what());
+        return Fail(ToExitStatus(error.GetCode()), limn::cli::NameFlags(error.what()));
     } catch (std::bad_alloc const&) {
         return Fail(1, "out of memory");
     } catch (std::exception const& error) {

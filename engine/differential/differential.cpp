@@ -198,13 +198,13 @@ void CheckOptions(Scene const& scene, int levels, DifferentialOptions const& opt
     if (options.spatialLevels + options.dirMagLevels > levels) {
         throw Error(
             ErrorCode::BadOption,
-            fmt::format("--levels {} holds no {} levels in space and {} by direction and magnitude",
+            fmt::format("`levels` {} holds no {} levels in space and {} by direction and magnitude",
                         levels, options.spatialLevels, options.dirMagLevels));
     }
     if (options.laplacian != Laplacian::Combinatorial && options.usesCholesky) {
         throw Error(
             ErrorCode::BadOption,
-            "--solver cholesky: only the combinatorial Laplacian stays the same from step to step; "
+            "`usesCholesky`: only the combinatorial Laplacian stays the same from step to step; "
             "use multigrid");
     }
     auto const check = [&](Index vertex) {
@@ -223,14 +223,15 @@ void Warn(Scene const& scene, DifferentialOptions const& options, DifferentialRe
             "space");
     }
     if (report.tangentialShare > eval::kDirMagLimit && options.dirMagLevels > 0) {
-        report.warnings.push_back(fmt::format(
-            "tangential parts are {:.2f} of the differential coordinates, more than {}: --dirmag "
-            "takes them for normals; leave it out",
-            report.tangentialShare, eval::kDirMagLimit));
+        report.warnings.push_back(
+            fmt::format("tangential parts are {:.2f} of the differential coordinates, more than "
+                        "{}: `dirMagLevels` "
+                        "takes them for normals; leave it out",
+                        report.tangentialShare, eval::kDirMagLimit));
     }
     if (std::abs(report.sizeRatio - 1.0) > 0.1) {
         report.warnings.push_back(fmt::format(
-            "the result has {:.2f} times the size of the spatial refinement; --spatial-first 1 "
+            "the result has {:.2f} times the size of the spatial refinement; `spatialLevels` 1 "
             "brings coarse cages nearer",
             report.sizeRatio));
     }

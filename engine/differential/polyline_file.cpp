@@ -61,7 +61,7 @@ std::vector<eval::Curve> ReadPolylines(std::string const& path) {
     }
     if (curves.empty()) {
         throw Error(ErrorCode::BadMesh,
-                    fmt::format("{}: the file has no polylines; --curve needs 'l' lines", path));
+                    fmt::format("{}: the file has no polylines; `curve` needs 'l' lines", path));
     }
     return curves;
 }
@@ -70,7 +70,7 @@ void WritePolylines(std::string const& path, std::vector<eval::Curve> const& cur
                     bool isDouble) {
     if (GetEnding(path) != ".obj") {
         throw Error(ErrorCode::BadOption,
-                    fmt::format("-o '{}': polylines are written as .obj", path));
+                    fmt::format("`path` '{}': polylines are written as .obj", path));
     }
     fmt::memory_buffer text;
     auto const to = std::back_inserter(text);

@@ -69,7 +69,7 @@ std::vector<Frame> FindByPattern(fs::path const& pattern) {
     size_t const at = name.find(kToken);
     if (at == std::string::npos) {
         throw Error(ErrorCode::BadOption,
-                    fmt::format("--frames {}: neither a folder nor a file name with {{frame}}",
+                    fmt::format("`frames` {}: neither a folder nor a file name with {{frame}}",
                                 pattern.string()));
     }
     std::string const before = name.substr(0, at), after = name.substr(at + kToken.size());
@@ -130,13 +130,13 @@ std::vector<Frame> FindFrames(std::string const& folderOrPattern) {
     bool const isFolder = fs::is_directory(folderOrPattern, ignored);
     auto frames = isFolder ? FindInFolder(folderOrPattern) : FindByPattern(folderOrPattern);
     if (frames.empty())
-        throw Error(ErrorCode::Io, fmt::format("--frames {}: no frames found", folderOrPattern));
+        throw Error(ErrorCode::Io, fmt::format("`frames` {}: no frames found", folderOrPattern));
     std::map<std::string, std::string> pathOfName;
     for (Frame const& frame : frames) {
         auto const [found, isNew] = pathOfName.try_emplace(frame.name, frame.path);
         if (isNew) continue;
         throw Error(ErrorCode::BadOption,
-                    fmt::format("--frames {}: '{}' and '{}' are both frame '{}'", folderOrPattern,
+                    fmt::format("`frames` {}: '{}' and '{}' are both frame '{}'", folderOrPattern,
                                 found->second, frame.path, frame.name));
     }
     return frames;
@@ -149,8 +149,9 @@ FramesReport EvaluateFrames(Scene const& scene, Far::TopologyRefiner const& refi
     if (options.outputPattern.find(kToken) == std::string::npos) {
         throw Error(
             ErrorCode::BadOption,
-            fmt::format("-o {}: {{frame}} is missing; every frame goes to a file of its own",
-                        options.outputPattern));
+            fmt::format(
+                "`outputPattern` {}: {{frame}} is missing; every frame goes to a file of its own",
+                options.outputPattern));
     }
     eval::LimitSurface const surface(refiner);
     eval::PlaceStencils const stencils(surface, LocatePlaces(scene, surface, places, placesPath));
@@ -171,8 +172,9 @@ FramesReport EvaluateFrames(Scene const& scene, Far::TopologyRefiner const& refi
         report.outputs.push_back(MakeOutputPath(options.outputPattern, frame.name));
         if (fs::path(report.outputs.back()).lexically_normal() ==
             fs::path(frame.path).lexically_normal()) {
-            throw Error(ErrorCode::BadOption, fmt::format("-o {}: would replace the frame '{}'",
-                                                          options.outputPattern, frame.path));
+            throw Error(ErrorCode::BadOption,
+                        fmt::format("`outputPattern` {}: would replace the frame '{}'",
+                                    options.outputPattern, frame.path));
         }
     }
     job.Start("frames", frames.size());

@@ -57,11 +57,12 @@ void Balance(Scene const& scene, std::vector<eval::FieldDesigner::Imbalance> con
             auto const face =
                 std::find(componentOfFace.begin(), componentOfFace.end(), imbalance.component) -
                 componentOfFace.begin();
-            throw Error(ErrorCode::BadMesh,
-                        fmt::format("{}: the {} on the component of face {} add up to {:.6g}, not "
-                                    "0, and nothing can leave it; change "
-                                    "them, or let --balance spread the opposite over the component",
-                                    scene.path, what, face, imbalance.sum));
+            throw Error(
+                ErrorCode::BadMesh,
+                fmt::format("{}: the {} on the component of face {} add up to {:.6g}, not "
+                            "0, and nothing can leave it; change "
+                            "them, or let `isBalanced` spread the opposite over the component",
+                            scene.path, what, face, imbalance.sum));
         }
         double const count = static_cast<double>(
             std::count(componentOf.begin(), componentOf.end(), imbalance.component));
@@ -95,7 +96,7 @@ Form Design(Scene const& scene, Far::TopologyLevel const& level, FieldOptions co
         static_cast<int>(options.harmonics.size()) != audit.numGenerators) {
         throw Error(
             ErrorCode::BadMesh,
-            fmt::format("{}: --harmonic gives {} coefficients; the surface has {} generators",
+            fmt::format("{}: `harmonics` gives {} coefficients; the surface has {} generators",
                         scene.path, options.harmonics.size(), audit.numGenerators));
     }
     Form form(static_cast<size_t>(level.GetNumEdges()), 0.0);

@@ -187,7 +187,7 @@ void RequireMeshEnding(std::string const& path) {
     std::string const ending = GetEnding(path);
     if (ending == ".obj" || ending == ".ply") return;
     throw Error(ErrorCode::BadOption,
-                fmt::format("-o '{}': a mesh is written as .obj or .ply", path));
+                fmt::format("`path` '{}': a mesh is written as .obj or .ply", path));
 }
 
 std::string FormatMesh(std::string const& path, Scene const& scene, bool isDouble,
@@ -200,7 +200,7 @@ std::string FormatMesh(std::string const& path, Scene const& scene, bool isDoubl
         !std::all_of(scene.uvs.begin(), scene.uvs.end(), isWritable)) {
         throw Error(ErrorCode::BadMesh,
                     fmt::format("'{}': a coordinate is no number or does not fit a {}", path,
-                                isDouble ? "double" : "float; use --precision double"));
+                                isDouble ? "double" : "float; use `precision` double"));
     }
     if (GetEnding(path) == ".obj") {
         if (warnings && !scene.primvars.empty())

@@ -31,7 +31,7 @@ public:
           _values(NumPixels(), 0.0f),
           _coverage(NumPixels(), 0.0f) {
         Vector const from(view.from[0], view.from[1], view.from[2]);
-        if (!(from.norm() > 0.0)) throw Error(ErrorCode::BadOption, "--view 0,0,0 is no direction");
+        if (!(from.norm() > 0.0)) throw Error(ErrorCode::BadOption, "`view` 0,0,0 is no direction");
         _toEye = from.normalized();
         Vector const up = std::abs(_toEye.y()) < 0.9 ? Vector::UnitY() : Vector::UnitZ();
         _right = up.cross(_toEye).normalized();

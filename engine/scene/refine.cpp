@@ -60,7 +60,7 @@ void MoveToLimit(Scene& fine) {
 
 std::unique_ptr<Far::TopologyRefiner> MakeUniformRefiner(Scene const& scene, int levels) {
     if (levels < 0 || levels > 10) {
-        throw Error(ErrorCode::BadOption, fmt::format("--levels: {} is not from 0 to 10", levels));
+        throw Error(ErrorCode::BadOption, fmt::format("`levels`: {} is not from 0 to 10", levels));
     }
     double const corners =
         static_cast<double>(scene.cage.faceVertices.size()) * std::pow(4.0, levels);

@@ -56,7 +56,7 @@ std::vector<char> SelectGroups(Scene const& scene, std::vector<std::string> cons
     for (std::string const& name : names) {
         if (std::find(all.begin(), all.end(), name) != all.end()) continue;
         throw Error(ErrorCode::BadOption,
-                    fmt::format("--groups: '{}' has no group '{}'; it has: {}", scene.path, name,
+                    fmt::format("`groups`: '{}' has no group '{}'; it has: {}", scene.path, name,
                                 all.empty() ? "none" : fmt::format("{}", fmt::join(all, ", "))));
     }
     std::vector<char> selected(scene.cage.faceSizes.size(), 0);

@@ -53,7 +53,7 @@ Value Parse(char const* option, std::string const& name, Named<Value> const (&ta
         known += (known.empty() ? "" : ", ") + std::string(row.name);
     }
     throw Error(ErrorCode::BadOption,
-                fmt::format("{}: '{}' is not one of {}", option, name, known));
+                fmt::format("`{}`: '{}' is not one of {}", option, name, known));
 }
 
 }  // namespace
@@ -78,22 +78,22 @@ char const* GetName(ExrCompression compression) {
 }
 
 Sdc::SchemeType ParseScheme(std::string const& name) {
-    return Parse("--scheme", name, kSchemes);
+    return Parse("scheme", name, kSchemes);
 }
 Sdc::Options::VtxBoundaryInterpolation ParseBoundary(std::string const& name) {
-    return Parse("--boundary", name, kBoundaries);
+    return Parse("boundary", name, kBoundaries);
 }
 Sdc::Options::FVarLinearInterpolation ParseFVar(std::string const& name) {
-    return Parse("--fvar", name, kFVars);
+    return Parse("fvar", name, kFVars);
 }
 Sdc::Options::CreasingMethod ParseCreases(std::string const& name) {
-    return Parse("--creases", name, kCreases);
+    return Parse("creases", name, kCreases);
 }
 Sdc::Options::TriangleSubdivision ParseTriangles(std::string const& name) {
-    return Parse("--triangles", name, kTriangles);
+    return Parse("triangles", name, kTriangles);
 }
 ExrCompression ParseCompression(std::string const& name) {
-    return Parse("--compression", name, kCompressions);
+    return Parse("compression", name, kCompressions);
 }
 
 std::string DescribeSubdivision(far_ext::ControlMesh const& cage) {

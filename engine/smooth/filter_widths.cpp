@@ -171,7 +171,7 @@ std::vector<double> FilterWidths::SampleEdges(SmoothLevels const& levels,
 FilterWidths FilterWidths::ReadTexture(std::string const& path, double width, Scene const& scene) {
     if (!scene.HasUVs()) {
         throw Error(ErrorCode::BadMesh,
-                    fmt::format("{}: the mesh has no texture coordinates; --width-texture needs "
+                    fmt::format("{}: the mesh has no texture coordinates; `widthTexture` needs "
                                 "them ('vt' in OBJ, s,t in PLY)",
                                 scene.path));
     }

@@ -69,7 +69,7 @@ void RequireGraph(Scene const& scene, Far::TopologyLevel const& level) {
             if (turn != 0.0 && (turn > 0.0) == (direction > 0.0)) continue;
             throw Error(ErrorCode::BadMesh,
                         fmt::format("{}: {} is folded, hollow or without area in the plane of x "
-                                    "and y; --graph needs heights z over a "
+                                    "and y; `isGraph` needs heights z over a "
                                     "plane of convex faces",
                                     scene.path, scene.NameFace(face)));
         }

@@ -33,7 +33,7 @@ far_ext::Bisection StartBisection(Scene const& scene, bool keepsCreases) {
     for (Index face = 0; face < scene.cage.GetNumFaces(); ++face) {
         if (scene.cage.faceSizes[face] == 3) continue;
         throw Error(ErrorCode::BadMesh,
-                    fmt::format("{}: {} has {} corners; --refinement bisect needs triangles, "
+                    fmt::format("{}: {} has {} corners; `refinement` bisect needs triangles, "
                                 "quadrisect takes all polygons",
                                 scene.path, scene.NameFace(face), scene.cage.faceSizes[face]));
     }

@@ -170,7 +170,7 @@ void SolveRowsByCholesky(CascadeLevel const& level, Operator const& op,
     if (cholesky.info() != Eigen::Success) {
         throw Error(
             ErrorCode::BadMesh,
-            "the filter's equation cannot be factorised; --solver cg needs no factorisation");
+            "the filter's equation cannot be factorised; `solver` cg needs no factorisation");
     }
     Eigen::MatrixXd const solution = cholesky.solve(rightSide);
     for (Index row = begin; row < end; ++row) {

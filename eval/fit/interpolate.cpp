@@ -35,8 +35,9 @@ void Validate(LimitOperator const& A, std::span<double const> M, int length, std
     size_t const count =
         static_cast<size_t>(A.GetNumVertices()) * static_cast<size_t>(std::max(length, 0));
     if (length < 1 || M.size() != count || P.size() != count) {
-        throw Error(ErrorCode::BadOption,
-                    "interpolation: data and solution need `length` numbers per vertex");
+        throw Error(
+            ErrorCode::BadOption,
+            "interpolation: data and solution need as many numbers per vertex as the length says");
     }
     if (!(options.tolerance > 0.0))
         throw Error(ErrorCode::BadOption, "interpolation: the tolerance must be above 0");

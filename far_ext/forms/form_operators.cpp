@@ -117,7 +117,7 @@ SparseRows BuildD1(Far::TopologyLevel const& level) {
 void CheckForms(Far::TopologyRefiner const& refiner) {
     if (refiner.GetSchemeType() == Sdc::SCHEME_BILINEAR) {
         throw Error(ErrorCode::BadOption,
-                    "forms are subdivided by Catmull-Clark or Loop; use --scheme catmark or loop");
+                    "forms are subdivided by Catmull-Clark or Loop; use `scheme` catmark or loop");
     }
     auto const level = refiner.GetLevel(0);
     for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
@@ -149,7 +149,7 @@ void CheckForms(Far::TopologyRefiner const& refiner) {
     if (hasBoundary && refiner.GetSchemeOptions().GetVtxBoundaryInterpolation() ==
                            Sdc::Options::VTX_BOUNDARY_NONE) {
         throw Error(ErrorCode::BadOption,
-                    "forms have no rule at boundaries under --boundary none; use edge-only or "
+                    "forms have no rule at boundaries under `boundary` none; use edge-only or "
                     "edge-and-corner");
     }
     if (refiner.GetSchemeType() == Sdc::SCHEME_CATMARK &&
@@ -159,7 +159,7 @@ void CheckForms(Far::TopologyRefiner const& refiner) {
             throw Error(
                 ErrorCode::Unsupported,
                 fmt::format(
-                    "face {} is a triangle; forms have no rule for --triangles smooth, use catmark",
+                    "face {} is a triangle; forms have no rule for `triangles` smooth, use catmark",
                     face));
         }
     }

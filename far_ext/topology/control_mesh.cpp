@@ -44,7 +44,7 @@ void ValidateFaces(ControlMesh const& mesh) {
         if (mesh.scheme == Sdc::SCHEME_LOOP && size != 3) {
             Refuse(ErrorCode::BadMesh,
                    fmt::format("face {} has {} corners; the loop scheme takes triangles only "
-                               "(use --scheme catmark)",
+                               "(use `scheme` catmark)",
                                face, size));
         }
         if (corner + static_cast<size_t>(size) > mesh.faceVertices.size()) {

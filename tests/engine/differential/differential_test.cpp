@@ -144,7 +144,7 @@ TEST(Differential, SizeAndTangentialShareAreWarnedOf) {
     engine::DifferentialReport other;
     Refine(sheared, 2, {.dirMagLevels = 1}, &other);
     EXPECT_GT(other.tangentialShare, 0.6);
-    EXPECT_NE(other.warnings.at(0).find("--dirmag"), std::string::npos);
+    EXPECT_NE(other.warnings.at(0).find("`dirMagLevels`"), std::string::npos);
     engine::DifferentialReport creased;
     Refine(test::LoadData("opensubdiv_shapes/catmark_cube_creases0.obj"), 1, {}, &creased);
     EXPECT_NE(creased.warnings.at(0).find("creases get round"), std::string::npos);

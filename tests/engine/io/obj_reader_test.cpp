@@ -187,7 +187,7 @@ TEST(ObjReader, AFaceIsInEachOfTheGroupsNamedAfterG) {
 TEST(ObjReader, UnknownGroupIsRefusedWithTheNamesThereAre) {
     Scene const scene = Parse(kQuadVertices + "usemtl red\nf 1 2 3\ng left\nf 1 2 4\n");
     EXPECT_EQ(test::RefusalOf([&] { engine::SelectGroups(scene, {"green"}); }),
-              "--groups: 'mesh.obj' has no group 'green'; it has: red, left");
+              "`groups`: 'mesh.obj' has no group 'green'; it has: red, left");
 }
 
 TEST(ObjReader, GroupDeclaredAfterTheLastFaceHoldsNoFace) {

@@ -473,11 +473,11 @@ TEST(FormOperators, RefuseWhatHasNoForms) {
 
     engine::Scene open = test::MakeLattice(2, 2, Sdc::SCHEME_CATMARK);
     open.cage.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_NONE);
-    EXPECT_NE(Refusal(open).find("--boundary none"), std::string::npos);
+    EXPECT_NE(Refusal(open).find("`boundary` none"), std::string::npos);
 
     engine::Scene bilinear = test::MakeCube();
     bilinear.cage.scheme = Sdc::SCHEME_BILINEAR;
-    EXPECT_NE(Refusal(bilinear).find("--scheme catmark or loop"), std::string::npos);
+    EXPECT_NE(Refusal(bilinear).find("`scheme` catmark or loop"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/cli/option_names.h"
+
+#include <algorithm>
+
+namespace limn::cli {
+
+namespace {
+
+constexpr OptionName kOptionNames[] = {
+    {"boundary", "--boundary"},
+    {"compression", "--compression"},
+    {"creases", "--creases"},
+    {"curve", "--curve"},
+    {"dirMagLevels", "--dirmag"},
+    {"frames", "--frames"},
+    {"fvar", "--fvar"},
+    {"groups", "--groups"},
+    {"harmonics", "--harmonic"},
+    {"isBalanced", "--balance"},
+    {"isGraph", "--graph"},
+    {"levels", "--levels"},
+    {"outputPattern", "-o"},
+    {"path", "-o"},
+    {"precision", "--precision"},
+    {"refinement", "--refinement"},
+    {"scheme", "--scheme"},
+    {"solver", "--solver"},
+    {"spatialLevels", "--spatial-first"},
+    {"triangles", "--triangles"},
+    {"usesCholesky", "--solver cholesky"},
+    {"view", "--view"},
+    {"widthTexture", "--width-texture"},
+};
+
+}  // namespace
+
+std::span<OptionName const> GetOptionNames() {
+    return kOptionNames;
+}
+
+std::string NameFlags(std::string_view message) {
+    std::string text;
+    while (true) {
+        size_t const open = message.find('`');
+        size_t const close = open == message.npos ? open : message.find('`', open + 1);
+        text += message.substr(0, open);
+        if (close == message.npos)
+            return text.append(message.substr(std::min(open, message.size())));
+        auto const member = message.substr(open + 1, close - open - 1);
+        auto const row = std::ranges::find(kOptionNames, member, &OptionName::member);
+        if (row == std::end(kOptionNames)) {
+            text += message.substr(open, close - open);  // the second one may open a member
+            message.remove_prefix(close);
+        } else {
+            text += row->flag;
+            message.remove_prefix(close + 1);
+        }
+    }
+}
+
+}  // namespace limn::cli
