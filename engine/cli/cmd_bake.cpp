@@ -7,6 +7,7 @@
 #include "engine/bake/bake.h"
 #include "engine/bake/maps/map_table.h"
 #include "engine/cli/cli.h"
+#include "engine/cli/option_names.h"
 #include "engine/cli/parse_number.h"
 #include "engine/io/edge_values.h"
 #include "engine/scene/subdivision_names.h"
@@ -146,7 +147,7 @@ nlohmann::json ToJson(engine::AuditReport const& audit, engine::BakeReport const
                               {"expected", c.expected},
                               {"relative_error", c.relativeError},
                               {"audited", c.wasAudited},
-                              {"reason", c.reason}});
+                              {"reason", NameFlags(c.reason)}});
     }
     return {{"seam_max", worst.max},
             {"seam_p99", worst.p99},
