@@ -9,7 +9,7 @@
 #include "engine/cli/option_names.h"
 #include "engine/io/file.h"
 #include "engine/io/mesh_reader.h"
-#include "engine/scene/mesh_info.h"
+#include "engine/scene/defects.h"
 #include "engine/scene/subdivision_names.h"
 #include "far_ext/error.h"
 
