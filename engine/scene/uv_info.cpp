@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "engine/images/udim.h"
+#include "engine/scene/udim.h"
 
 namespace limn::engine {
 
