@@ -12,7 +12,7 @@
 #include "engine/bake/maps/map_table.h"
 #include "engine/bake/strip_baker.h"
 #include "engine/bake/tile_job.h"
-#include "engine/images/udim.h"
+#include "engine/scene/udim.h"
 #include "far_ext/error.h"
 
 namespace limn::engine {

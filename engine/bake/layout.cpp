@@ -7,8 +7,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "engine/images/udim.h"
+#include "engine/images/exr_names.h"
 #include "engine/scene/subdivision_names.h"
+#include "engine/scene/udim.h"
 
 namespace limn::engine {
 
@@ -65,7 +66,7 @@ std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, M
     std::string text = fmt::format(
         "size={}x{} samples={} padding={} type={} compression={} mip={} coverage={}", options.width,
         options.height, options.samplesPerSide, options.padding, options.isHalf ? "half" : "float",
-        GetName(options.compression), options.hasMips, options.hasCoverage);
+        kExrCompressionWords.GetWord(options.compression), options.hasMips, options.hasCoverage);
     text += fmt::format(" {} orientation={}", DescribeSubdivision(model.GetCage()),
                         options.isLeftHanded ? "left" : "right");
     if (!options.groups.empty()) {

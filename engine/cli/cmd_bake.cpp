@@ -9,8 +9,8 @@
 #include "engine/cli/cli.h"
 #include "engine/cli/option_names.h"
 #include "engine/cli/parse_number.h"
+#include "engine/images/exr_names.h"
 #include "engine/io/edge_values.h"
-#include "engine/scene/subdivision_names.h"
 #include "far_ext/error.h"
 
 namespace limn::cli {
@@ -96,7 +96,7 @@ engine::BakeOptions MakeOptions(BakeArguments const& a, CommonOptions const& com
     options.hasMips = a.hasMips;
     options.hasCoverage = a.hasCoverage;
     options.hasPreview = a.hasPreview;
-    options.compression = engine::ParseCompression(a.compression);
+    options.compression = engine::kExrCompressionWords.Parse(a.compression);
     options.groups = a.groups;
     options.skipsExisting = a.skipExisting;
     options.isLeftHanded = common.IsLeftHanded();

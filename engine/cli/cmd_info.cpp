@@ -42,11 +42,11 @@ nlohmann::json ToJson(engine::MeshInfo const& info, far_ext::ControlMesh const& 
               {"zero_area_faces", info.uv.zeroAreaFaces},
               {"out_of_range_faces", info.uv.outOfRangeFaces}}},
             {"options",
-             {{"scheme", engine::GetName(cage.scheme)},
-              {"boundary", engine::GetName(options.GetVtxBoundaryInterpolation())},
-              {"fvar", engine::GetName(options.GetFVarLinearInterpolation())},
-              {"creases", engine::GetName(options.GetCreasingMethod())},
-              {"triangles", engine::GetName(options.GetTriangleSubdivision())}}},
+             {{"scheme", engine::kSchemeWords.GetWord(cage.scheme)},
+              {"boundary", engine::kBoundaryWords.GetWord(options.GetVtxBoundaryInterpolation())},
+              {"fvar", engine::kFVarWords.GetWord(options.GetFVarLinearInterpolation())},
+              {"creases", engine::kCreaseWords.GetWord(options.GetCreasingMethod())},
+              {"triangles", engine::kTriangleWords.GetWord(options.GetTriangleSubdivision())}}},
             {"defects", defects}};
 }
 

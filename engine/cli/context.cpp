@@ -9,7 +9,7 @@
 #include "engine/cli/option_names.h"
 #include "engine/io/file.h"
 #include "engine/io/mesh_reader.h"
-#include "engine/scene/mesh_info.h"
+#include "engine/scene/defects.h"
 #include "engine/scene/subdivision_names.h"
 #include "far_ext/error.h"
 
@@ -32,13 +32,14 @@ Console::Style ChooseStyle(CommonOptions const& common) {
 
 void ApplyOptions(CommonOptions const& common, Scene& scene) {
     auto& cage = scene.cage;
-    if (common.scheme) cage.scheme = engine::ParseScheme(*common.scheme);
+    if (common.scheme) cage.scheme = engine::kSchemeWords.Parse(*common.scheme);
     if (common.boundary)
-        cage.options.SetVtxBoundaryInterpolation(engine::ParseBoundary(*common.boundary));
-    if (common.fvar) cage.options.SetFVarLinearInterpolation(engine::ParseFVar(*common.fvar));
-    if (common.creases) cage.options.SetCreasingMethod(engine::ParseCreases(*common.creases));
+        cage.options.SetVtxBoundaryInterpolation(engine::kBoundaryWords.Parse(*common.boundary));
+    if (common.fvar)
+        cage.options.SetFVarLinearInterpolation(engine::kFVarWords.Parse(*common.fvar));
+    if (common.creases) cage.options.SetCreasingMethod(engine::kCreaseWords.Parse(*common.creases));
     if (common.triangles)
-        cage.options.SetTriangleSubdivision(engine::ParseTriangles(*common.triangles));
+        cage.options.SetTriangleSubdivision(engine::kTriangleWords.Parse(*common.triangles));
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 
 #include "engine/io/file.h"
 #include "engine/io/mesh_reader.h"
+#include "engine/scene/same_faces.h"
 #include "far_ext/error.h"
 
 namespace limn::engine {
@@ -97,30 +98,29 @@ std::string MakeOutputPath(std::string path, std::string const& frame) {
     return path;
 }
 
+/// What a frame has that the mesh has not.
+std::string Describe(Scene const& frame, FaceDifference const& difference) {
+    auto const& [kind, there, here, face, corner] = difference;
+    switch (kind) {
+        case FaceDifference::Kind::NumVertices:
+            return fmt::format("{} vertices, there {}", here, there);
+        case FaceDifference::Kind::NumFaces:
+            return fmt::format("{} faces, there {}", here, there);
+        case FaceDifference::Kind::FaceSize:
+            return fmt::format("{} has {} corners, there {}", frame.NameFace(face), here, there);
+        case FaceDifference::Kind::Vertex:
+            break;
+    }
+    return fmt::format("{} has vertex {} at corner {}, there {}", frame.NameFace(face), here,
+                       corner, there);
+}
+
 /// Refuses a frame whose faces are not the mesh's.
 void CheckTopology(Scene const& mesh, Scene const& frame) {
-    auto const refuse = [&](std::string const& difference) {
-        throw Error(ErrorCode::BadMesh, fmt::format("{}: not the topology of '{}': {}", frame.path,
-                                                    mesh.path, difference));
-    };
-    auto const &a = mesh.cage, &b = frame.cage;
-    if (b.numVertices != a.numVertices)
-        refuse(fmt::format("{} vertices, there {}", b.numVertices, a.numVertices));
-    if (b.GetNumFaces() != a.GetNumFaces())
-        refuse(fmt::format("{} faces, there {}", b.GetNumFaces(), a.GetNumFaces()));
-    size_t corner = 0;
-    for (Index face = 0; face < a.GetNumFaces(); ++face) {
-        if (b.faceSizes[face] != a.faceSizes[face]) {
-            refuse(fmt::format("{} has {} corners, there {}", frame.NameFace(face),
-                               b.faceSizes[face], a.faceSizes[face]));
-        }
-        for (int i = 0; i < a.faceSizes[face]; ++i, ++corner) {
-            if (b.faceVertices[corner] != a.faceVertices[corner]) {
-                refuse(fmt::format("{} has vertex {} at corner {}, there {}", frame.NameFace(face),
-                                   b.faceVertices[corner], i, a.faceVertices[corner]));
-            }
-        }
-    }
+    auto const difference = FindFaceDifference(mesh.cage, frame.cage);
+    if (!difference) return;
+    throw Error(ErrorCode::BadMesh, fmt::format("{}: not the topology of '{}': {}", frame.path,
+                                                mesh.path, Describe(frame, *difference)));
 }
 
 }  // namespace

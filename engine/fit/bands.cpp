@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "engine/scene/job.h"
+#include "engine/scene/same_faces.h"
 #include "far_ext/error.h"
 #include "far_ext/rows/points.h"
 
@@ -58,32 +59,26 @@ std::vector<std::vector<double>> SplitIntoBands(Scene const& scene, eval::LimitO
 
 namespace {
 
-void RequireSameFaces(Scene const& from, Scene const& to) {
-    auto const refuse = [&](std::string const& what) {
-        throw Error(
-            ErrorCode::BadMesh,
-            fmt::format(
-                "{} and {} do not have the same faces: {}; a morph needs the same vertices and "
-                "faces in the same order",
-                from.path, to.path, what));
-    };
-    auto const &a = from.cage, &b = to.cage;
-    if (a.numVertices != b.numVertices)
-        refuse(fmt::format("{} and {} vertices", a.numVertices, b.numVertices));
-    if (a.GetNumFaces() != b.GetNumFaces())
-        refuse(fmt::format("{} and {} faces", a.GetNumFaces(), b.GetNumFaces()));
-    size_t corner = 0;
-    for (Index face = 0; face < a.GetNumFaces(); ++face) {
-        size_t const size = a.faceSizes[face];
-        bool isSame = a.faceSizes[face] == b.faceSizes[face];
-        for (size_t i = corner; isSame && i < corner + size; ++i)
-            isSame = a.faceVertices[i] == b.faceVertices[i];
-        if (!isSame) {
-            refuse(fmt::format("{} has other vertices than {}", from.NameFace(face),
-                               to.NameFace(face)));
-        }
-        corner += size;
+std::string Describe(Scene const& from, Scene const& to, FaceDifference const& difference) {
+    switch (difference.kind) {
+        case FaceDifference::Kind::NumVertices:
+            return fmt::format("{} and {} vertices", difference.a, difference.b);
+        case FaceDifference::Kind::NumFaces:
+            return fmt::format("{} and {} faces", difference.a, difference.b);
+        default:
+            return fmt::format("{} has other vertices than {}", from.NameFace(difference.face),
+                               to.NameFace(difference.face));
     }
+}
+
+void RequireSameFaces(Scene const& from, Scene const& to) {
+    auto const difference = FindFaceDifference(from.cage, to.cage);
+    if (!difference) return;
+    throw Error(
+        ErrorCode::BadMesh,
+        fmt::format("{} and {} do not have the same faces: {}; a morph needs the same vertices and "
+                    "faces in the same order",
+                    from.path, to.path, Describe(from, to, *difference)));
 }
 
 }  // namespace

@@ -7,30 +7,11 @@
 
 #include <opensubdiv/far/topologyLevel.h>
 
+#include "engine/scene/defects.h"
 #include "engine/scene/scene.h"
+#include "engine/scene/uv_info.h"
 
 namespace limn::engine {
-
-/// Something about a mesh that its maker should know.
-struct Defect {
-    std::string kind;    ///< non_manifold_edge, non_manifold_vertex, winding, not_orientable,
-                         ///< repeated_corner, unreferenced_vertex, crease_without_edge
-    Index element = -1;  ///< the first edge, vertex or face concerned
-    uint32_t line = 0;   ///< in the file, where known
-    size_t count = 1;    ///< how many elements have it
-    std::string message;
-};
-
-/// All defects, one entry per kind.
-///
-/// \param level  the base level of the scene's refiner
-std::vector<Defect> FindDefects(Scene const& scene, Far::TopologyLevel const& level);
-
-struct UVInfo {
-    bool present = false;
-    std::vector<int> tiles;
-    size_t overlapFaces = 0, flippedFaces = 0, zeroAreaFaces = 0, outOfRangeFaces = 0;
-};
 
 struct MeshInfo {
     Index vertices = 0, edges = 0, faces = 0;

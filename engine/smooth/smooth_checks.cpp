@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "engine/scene/mesh_info.h"
+#include "engine/scene/defects.h"
 #include "far_ext/error.h"
 #include "far_ext/rows/points.h"
 #include "far_ext/topology/face_components.h"

@@ -9,7 +9,7 @@
 
 #include "engine/bake/layout.h"
 #include "engine/images/exr_lookup.h"
-#include "engine/images/udim.h"
+#include "engine/scene/udim.h"
 #include "eval/surface/surface_place.h"
 
 namespace limn::engine {

@@ -8,6 +8,7 @@
 
 #include "engine/bake/maps/map_table.h"
 #include "engine/bake/maps/vector_frame.h"
+#include "engine/scene/same_faces.h"
 #include "engine/scene/subdivision_names.h"
 #include "eval/surface/finer_surface.h"
 #include "far_ext/error.h"
@@ -15,10 +16,6 @@
 namespace limn::engine {
 
 namespace {
-
-bool HaveSameFaces(far_ext::ControlMesh const& a, far_ext::ControlMesh const& b) {
-    return a.faceVertices == b.faceVertices && a.faceSizes == b.faceSizes;
-}
 
 class DisplacementMap : public Map {
 public:
@@ -35,7 +32,7 @@ public:
                                 "faces and vertices in the same order, or these refined by the "
                                 "same `scheme` ({})",
                                 _other.GetPath(), baked.model.GetPath(),
-                                GetName(baked.model.GetCage().scheme)));
+                                kSchemeWords.GetWord(baked.model.GetCage().scheme)));
     }
 
     std::vector<eval::FaceTree::Values> GetValues() const override {

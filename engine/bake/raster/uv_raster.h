@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/bake/raster/texture_piece.h"
-#include "engine/images/udim.h"
+#include "engine/scene/udim.h"
 #include "eval/surface/face_tree.h"
 #include "eval/surface/inversion_kernel.h"
 #include "far_ext/rows/large_array.h"

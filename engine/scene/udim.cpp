@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/images/udim.h"
+#include "engine/scene/udim.h"
 
 namespace limn::engine {
 
