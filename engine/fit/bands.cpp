@@ -16,7 +16,7 @@ MeshExtent MeasureExtent(Scene const& scene, Far::TopologyLevel const& level) {
     MeshExtent extent;
     far_ext::Points const points(scene.positions);
     Eigen::Vector3d low = points[0], high = low;
-    for (size_t vertex = 1; vertex < points.size(); ++vertex) {
+    for (size_t vertex = 1; vertex < points.GetCount(); ++vertex) {
         low = low.cwiseMin(points[vertex]);
         high = high.cwiseMax(points[vertex]);
     }

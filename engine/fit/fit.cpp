@@ -79,7 +79,7 @@ Certificate Certify(Scene const& mesh, std::span<double const> data, double tole
     Certificate certificate;
     double sum = 0.0;
     far_ext::Points const reached(limits.values), wanted(data);
-    size_t const count = wanted.size();
+    size_t const count = wanted.GetCount();
     for (size_t i = 0; i < count; ++i) {
         double const miss = (reached[i] - wanted[i]).norm() / size;
         sum += miss * miss;

@@ -16,7 +16,7 @@ namespace {
 
 Eigen::AlignedBox3d GetBounds(far_ext::Points points) {
     Eigen::AlignedBox3d box;
-    for (size_t vertex = 0; vertex < points.size(); ++vertex) box.extend(points[vertex]);
+    for (size_t vertex = 0; vertex < points.GetCount(); ++vertex) box.extend(points[vertex]);
     return box;
 }
 

@@ -106,7 +106,7 @@ std::vector<double> MeasureCotangents(Level const& level, Points points,
 /// Points as nanoflann reads them.
 struct PointCloud {
     Points points;
-    size_t kdtree_get_point_count() const { return points.size(); }
+    size_t kdtree_get_point_count() const { return points.GetCount(); }
     double kdtree_get_pt(size_t index, size_t axis) const {
         return points[index][static_cast<Eigen::Index>(axis)];
     }

@@ -34,7 +34,7 @@ public:
     Eigen::Map<Vector> operator[](size_t vertex) const {
         return Eigen::Map<Vector>(_values.data() + 3 * vertex);
     }
-    size_t size() const { return _values.size() / 3; }
+    size_t GetCount() const { return _values.size() / 3; }
 
 private:
     std::span<Real> _values;

@@ -18,7 +18,7 @@ using far_ext::Points;
 TEST(Points, APointIsTheThreeNumbersOfItsVertex) {
     std::vector<double> const positions{0, 1, 2, 3, 4, 5};
     Points const points(positions);
-    EXPECT_EQ(points.size(), 2u);
+    EXPECT_EQ(points.GetCount(), 2u);
     EXPECT_EQ(points[1], Eigen::Vector3d(3, 4, 5));
 }
 
