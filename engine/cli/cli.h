@@ -24,7 +24,8 @@ std::string GetVersion();
 /// Options every verb shares (docs: "The command line").
 struct CommonOptions {
     std::optional<std::string> scheme, boundary, fvar, creases, triangles;
-    std::string orientation = "right", precision = "float", progress = "auto", reportPath;
+    std::string orientation = "right", precision = "float", reportPath;
+    std::optional<Console::Style> progress;  ///< none: what suits stderr
     int numThreads = 0;
     bool isQuiet = false, isVerbose = false;
 

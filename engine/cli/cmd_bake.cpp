@@ -7,8 +7,10 @@
 #include "engine/bake/bake.h"
 #include "engine/bake/maps/map_table.h"
 #include "engine/cli/cli.h"
+#include "engine/cli/names.h"
 #include "engine/cli/option_names.h"
 #include "engine/cli/parse_number.h"
+#include "engine/cli/word_option.h"
 #include "engine/images/exr_names.h"
 #include "engine/io/edge_values.h"
 #include "far_ext/error.h"
@@ -18,18 +20,11 @@ namespace limn::cli {
 namespace {
 
 struct BakeArguments {
-    std::vector<std::string> meshes;
-    std::string pattern, size = "2048", compression = "zip", against, fieldPath, space = "object",
-                         encode;
-    std::vector<std::string> maps, tiles, groups;
-    int samples = 1, padding = 16;
-    bool isHalf = false, hasMips = false, hasCoverage = false, hasPreview = false, isVector = false,
-         skipExisting = false, hasAudit = false;
+    std::vector<std::string> meshes, tiles;
+    std::string size = "2048", compression = "zip", against, fieldPath, encode, noiseRamp;
+    bool hasAudit = false;
     double auditBound = 1e-3;
-    engine::NoiseOptions noise;
-    std::string noiseRamp;
-    bool isNormalized = false;
-    int numBands = 4;
+    engine::BakeOptions options;
 };
 
 int ParseInteger(std::string const& option, std::string_view text, int low, int high) {
@@ -77,28 +72,12 @@ engine::Encoding ParseEncoding(std::string const& text) {
 }
 
 engine::BakeOptions MakeOptions(BakeArguments const& a, CommonOptions const& common) {
-    engine::BakeOptions options;
-    options.pattern = a.pattern;
-    options.maps = a.maps;
-    options.isVector = a.isVector;
-    if (a.space == "tangent") options.space = engine::VectorSpace::Tangent;
-    if (a.space == "uv") options.space = engine::VectorSpace::UV;
+    engine::BakeOptions options = a.options;
     if (!a.encode.empty()) options.encoding = ParseEncoding(a.encode);
-    options.noise = a.noise;
     if (!a.noiseRamp.empty()) options.noiseRamp = engine::ColourRamp::Parse(a.noiseRamp);
-    options.isNormalized = a.isNormalized;
-    options.bands = a.numBands;
     ParseSize(a.size, options);
     ParseTiles(a.tiles, options);
-    options.samplesPerSide = a.samples;
-    options.padding = a.padding;
-    options.isHalf = a.isHalf;
-    options.hasMips = a.hasMips;
-    options.hasCoverage = a.hasCoverage;
-    options.hasPreview = a.hasPreview;
     options.compression = engine::kExrCompressionWords.Parse(a.compression);
-    options.groups = a.groups;
-    options.skipsExisting = a.skipExisting;
     options.isLeftHanded = common.IsLeftHanded();
     options.wantsChecksums = !common.reportPath.empty();
     options.version = GetVersion();
@@ -162,10 +141,10 @@ nlohmann::json ToJson(engine::AuditReport const& audit, engine::BakeReport const
 
 int Run(BakeArguments const& a, Context& context) {
     engine::BakeOptions options = MakeOptions(a, context.GetCommon());
-    if (a.meshes.size() > 1 && a.pattern.find("{mesh}") == std::string::npos) {
+    if (a.meshes.size() > 1 && a.options.pattern.find("{mesh}") == std::string::npos) {
         throw Error(ErrorCode::BadOption, "-o: several meshes need {mesh} in the output's name");
     }
-    if (a.maps.size() > 1 && a.pattern.find("{map}") == std::string::npos) {
+    if (a.options.maps.size() > 1 && a.options.pattern.find("{map}") == std::string::npos) {
         context.GetJob().Warn(
             "the output's name has no {map}: all maps go into one file with a layer each");
     }
@@ -200,58 +179,60 @@ Verb AddBake(CLI::App& app) {
         app.add_subcommand("bake", "Bake maps of the limit surface into textures");
     verb->add_option("MESH", a->meshes, "OBJ, PLY or OFF; several with {mesh} in the output's name")
         ->required();
-    verb->add_option("-o,--output", a->pattern, "output path with {map}, {mesh}, <UDIM> or {udim}")
+    verb->add_option("-o,--output", a->options.pattern,
+                     "output path with {map}, {mesh}, <UDIM> or {udim}")
         ->required();
-    verb->add_option("--maps", a->maps, "comma-separated: " + engine::ListMapNames())
+    verb->add_option("--maps", a->options.maps, "comma-separated: " + engine::ListMapNames())
         ->delimiter(',')
         ->required();
     verb->add_option("--size", a->size, "texels: N or WxH (default 2048)");
     verb->add_option("--tiles", a->tiles, "UDIM tiles, e.g. 1001,1003-1005 (default all)")
         ->delimiter(',');
-    verb->add_option("--samples", a->samples, "N x N samples per texel (default 1)")
+    verb->add_option("--samples", a->options.samplesPerSide, "N x N samples per texel (default 1)")
         ->check(CLI::Range(1, 16));
-    verb->add_option("--padding", a->padding, "texels grown round the charts (default 16)")
+    verb->add_option("--padding", a->options.padding, "texels grown round the charts (default 16)")
         ->check(CLI::Range(0, 4096));
-    verb->add_flag("--half", a->isHalf, "16-bit floats (default 32-bit)");
+    verb->add_flag("--half", a->options.isHalf, "16-bit floats (default 32-bit)");
     verb->add_option("--compression", a->compression,
                      "zip (default), zips, piz, rle, none or dwaa");
-    verb->add_flag("--mip", a->hasMips, "mip levels, for renderers");
-    verb->add_flag("--coverage", a->hasCoverage, "add a channel 'coverage'");
-    verb->add_flag("--preview", a->hasPreview, "also a PNG to look at");
+    verb->add_flag("--mip", a->options.hasMips, "mip levels, for renderers");
+    verb->add_flag("--coverage", a->options.hasCoverage, "add a channel 'coverage'");
+    verb->add_flag("--preview", a->options.hasPreview, "also a PNG to look at");
     verb->add_option("--encode", a->encode, "S,O: write value * S + O");
     verb->add_option("--against", a->against, "the mesh that displacement leads to");
-    verb->add_option("--bands", a->numBands,
+    verb->add_option("--bands", a->options.bands,
                      "of the map bands: frequency bands, their smooth base included (default 4)")
         ->check(CLI::Range(1, 64));
-    verb->add_flag("--vector", a->isVector, "displacement and bands as vectors");
-    verb->add_option("--space", a->space,
-                     "object (default) or tangent, of vectors; uv: of the map field, flow in "
-                     "texture coordinates")
-        ->check(CLI::IsMember({"object", "tangent", "uv"}));
+    verb->add_flag("--vector", a->options.isVector, "displacement and bands as vectors");
+    AddWordOption(*verb, "--space", a->options.space, kVectorSpaceWords,
+                  "object (default) or tangent, of vectors; uv: of the map field, flow in "
+                  "texture coordinates");
     verb->add_option(
         "--field", a->fieldPath,
         "CSV v0,v1,value of MESH's edges, for the map field (limn field -o x.edges.csv)");
-    verb->add_option("--noise-octaves", a->noise.octaves,
+    verb->add_option("--noise-octaves", a->options.noise.octaves,
                      "levels of refinement with noise each (default 4)")
         ->check(CLI::Range(1, 10));
     verb->add_option(
-            "--noise-frequency", a->noise.frequency,
+            "--noise-frequency", a->options.noise.frequency,
             "noise cells per unit length in the first octave (default: half a cell per mean edge)")
         ->check(CLI::Range(1e-12, 1e12));
-    verb->add_option("--noise-gain", a->noise.gain, "amplitude from octave to octave (default 0.5)")
+    verb->add_option("--noise-gain", a->options.noise.gain,
+                     "amplitude from octave to octave (default 0.5)")
         ->check(CLI::Range(0.0, 16.0));
-    verb->add_option("--noise-seed", a->noise.seed, "another noise for every number (default 0)");
+    verb->add_option("--noise-seed", a->options.noise.seed,
+                     "another noise for every number (default 0)");
     verb->add_option("--noise-ramp", a->noiseRamp,
                      "noise as colours: '#rrggbb,#rrggbb,...' from low to high, equally spaced");
-    verb->add_flag("--normalize", a->isNormalized,
+    verb->add_flag("--normalize", a->options.isNormalized,
                    "noise from 0 to 1 over the whole surface; fields of length 1");
     verb->add_flag("--audit", a->hasAudit,
                    "check seams, coverage and Gauss-Bonnet, and report them");
     verb->add_option("--audit-bound", a->auditBound,
                      "of the Gauss-Bonnet error (default 1e-3); missed: exit status 4");
-    verb->add_option("--groups", a->groups, "only faces of these usemtl, g or o groups")
+    verb->add_option("--groups", a->options.groups, "only faces of these usemtl, g or o groups")
         ->delimiter(',');
-    verb->add_flag("--skip-existing", a->skipExisting,
+    verb->add_flag("--skip-existing", a->options.skipsExisting,
                    "leave files of the same input, options and version alone");
     verb->footer(
         "Example:\n  limn bake scenes/spot/spot.obj -o 'out/spot.{map}.<UDIM>.exr' --maps "

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
+#include "engine/cli/word_option.h"
 #include "engine/evaluate/evaluate.h"
 #include "engine/evaluate/frames.h"
 #include "engine/io/file.h"
@@ -11,7 +12,8 @@ namespace limn::cli {
 namespace {
 
 struct EvalArguments {
-    std::string mesh, places, output, frames, evaluator;
+    std::string mesh, places, output, frames;
+    std::optional<eval::EvaluatorKind> evaluator;
 };
 
 void EvaluateFrames(EvalArguments const& a, engine::Scene const& scene,
@@ -19,13 +21,13 @@ void EvaluateFrames(EvalArguments const& a, engine::Scene const& scene,
                     Context& context) {
     CommonOptions const& common = context.GetCommon();
     engine::FrameOptions const options{a.output, common.IsLeftHanded(), common.IsDouble(),
-                                       eval::FindEvaluator(a.evaluator)};
+                                       a.evaluator};
     auto const result = engine::EvaluateFrames(
         scene, refiner, places, a.places, engine::FindFrames(a.frames), options, context.GetJob());
     auto& report = context.GetReport();
     report["places_without_limit"] = result.numWithoutLimit;
     report["places_in_table"] = result.numRows;
-    report["evaluator"] = a.evaluator.empty() ? "double" : a.evaluator;
+    report["evaluator"] = a.evaluator ? GetName(*a.evaluator) : "double";
     report["frames"] = result.outputs.size();
     report["outputs"] = result.outputs;
 }
@@ -47,10 +49,9 @@ Verb AddEval(CLI::App& app) {
                 "the same places in every frame: a folder of meshes, or a file name with {frame}; "
                 "MESH gives topology and tags")
             ->needs(output);
-    verb->add_option("--evaluator", a->evaluator,
-                     "apply the frames' table in float: simd (limn's), osd-cpu or osd-omp "
-                     "(OpenSubdiv's); default: in double")
-        ->check(CLI::IsMember({"simd", "osd-cpu", "osd-omp"}))
+    AddWordOption(*verb, "--evaluator", a->evaluator, eval::kEvaluatorWords,
+                  "apply the frames' table in float: simd (limn's), osd-cpu or osd-omp "
+                  "(OpenSubdiv's); default: in double")
         ->needs(frames);
     verb->footer(
         "Example:\n  printf 'face,s,t\\n0,0.5,0.5\\n' > places.csv\n  limn eval "

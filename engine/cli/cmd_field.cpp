@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
+#include "engine/cli/names.h"
 #include "engine/cli/parse_number.h"
+#include "engine/cli/word_option.h"
 #include "engine/field/field.h"
 #include "engine/io/edge_values.h"
 #include "engine/io/mesh_writer.h"
@@ -18,11 +20,10 @@ namespace limn::cli {
 namespace {
 
 struct FieldArguments {
-    std::string mesh, output, edgesPath, matchPath, harmonics, picture, atBoundary = "tangent";
+    std::string mesh, output, edgesPath, matchPath, harmonics, picture;
     std::vector<double> view{1.0, 0.6, 0.8};
     std::vector<std::string> sources, sinks, vortices;
-    int levels = 0;
-    bool isBalanced = false;
+    engine::FieldOptions options;
 };
 
 /// "12" or "12:0.5".
@@ -65,7 +66,7 @@ std::vector<eval::WantedVector> ReadWanted(std::string const& path,
 }
 
 engine::FieldOptions MakeOptions(FieldArguments const& a, Far::TopologyLevel const& level) {
-    engine::FieldOptions options;
+    engine::FieldOptions options = a.options;
     for (auto const& text : a.sources)
         options.sources.push_back(ParseStrength(text, "--source", 1.0));
     for (auto const& text : a.sinks) options.sources.push_back(ParseStrength(text, "--sink", -1.0));
@@ -80,10 +81,6 @@ engine::FieldOptions MakeOptions(FieldArguments const& a, Far::TopologyLevel con
                     "a field needs at least one of --source, --sink, --vortex, --harmonic, --edges "
                     "and --match");
     }
-    options.atBoundary =
-        a.atBoundary == "normal" ? eval::AtBoundary::Normal : eval::AtBoundary::Tangent;
-    options.isBalanced = a.isBalanced;
-    options.levels = a.levels;
     return options;
 }
 
@@ -135,7 +132,7 @@ int Run(FieldArguments const& a, Context& context) {
     engine::FieldAudit audit;
     auto options = MakeOptions(a, mesh.refiner->GetLevel(0));
     options.hasVertexVectors = output == Output::Mesh || !a.picture.empty();
-    if (output != Output::Mesh && options.hasVertexVectors && a.levels == 0 &&
+    if (output != Output::Mesh && options.hasVertexVectors && options.levels == 0 &&
         !far_ext::HasRefinedFaces(mesh.scene.cage)) {
         throw Error(ErrorCode::BadOption,
                     "--picture: arrows stand at vertices of a refined mesh, and the output is that "
@@ -154,7 +151,7 @@ int Run(FieldArguments const& a, Context& context) {
                   FormatVectors("vertex", field.vectors, isDouble));
     } else if (output == Output::Edges) {
         files.Add(a.output,
-                  engine::FormatEdgeValues(field.refined->GetLevel(a.levels), field.form));
+                  engine::FormatEdgeValues(field.refined->GetLevel(options.levels), field.form));
     } else {
         files.Add(a.output, FormatVectors("face", field.faceVectors, isDouble));
     }
@@ -194,13 +191,12 @@ Verb AddField(CLI::App& app) {
                      "CSV v0,v1,value: a field along edges of MESH, to be added");
     verb->add_option("--match", a->matchPath,
                      "CSV face,x,y,z or vertex,x,y,z: vectors that the field is to fit");
-    verb->add_option("--levels", a->levels,
+    verb->add_option("--levels", a->options.levels,
                      "refinements (default 0; 1 where faces are not all quads)")
         ->check(CLI::Range(0, 10));
-    verb->add_option("--at-boundary", a->atBoundary,
-                     "tangent (default): the field runs along boundaries; normal: into them")
-        ->check(CLI::IsMember({"tangent", "normal"}));
-    verb->add_flag("--balance", a->isBalanced,
+    AddWordOption(*verb, "--at-boundary", a->options.atBoundary, kAtBoundaryWords,
+                  "tangent (default): the field runs along boundaries; normal: into them");
+    verb->add_flag("--balance", a->options.isBalanced,
                    "spread what strengths do not add up to evenly over their component");
     auto* const picture = verb->add_option("--picture", a->picture,
                                            "also write a PNG: arrows along the field, on the mesh");

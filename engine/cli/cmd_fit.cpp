@@ -21,15 +21,10 @@ struct FitArguments {
 };
 
 eval::SolveMethod ParseMethod(std::string const& name) {
-    using Method = eval::SolveMethod;
-    for (Method method : {Method::Automatic, Method::Progressive, Method::Weighted,
-                          Method::Chebyshev, Method::ConjugateGradients, Method::Direct}) {
-        if (name == GetName(method)) return method;
-    }
-    throw Error(
-        ErrorCode::BadOption,
-        fmt::format("--method: '{}' is none of progressive, weighted, chebyshev, cg, direct, auto",
-                    name));
+    auto const& words = eval::kSolveMethodWords;
+    if (auto const method = words.Find(name)) return *method;
+    throw Error(ErrorCode::BadOption,
+                fmt::format("--method: '{}' is none of {}", name, JoinWords(words.List())));
 }
 
 nlohmann::json ToJson(std::vector<eval::SingularReport> const& components) {

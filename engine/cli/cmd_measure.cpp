@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
+#include "engine/cli/names.h"
+#include "engine/cli/word_option.h"
 #include "engine/io/mesh_writer.h"
 #include "engine/measure/measure.h"
 #include "engine/measure/mesh_picture.h"
@@ -12,7 +14,8 @@ namespace limn::cli {
 namespace {
 
 struct MeasureArguments {
-    std::string mesh, prefix, surface = "limit";
+    std::string mesh, prefix;
+    engine::MeasuredSurface surface = engine::MeasuredSurface::Limit;
     std::vector<double> view{1.0, 0.6, 0.8};
     bool hasHighlight = false, hasPicture = false;
 };
@@ -53,12 +56,10 @@ int RunMeasure(MeasureArguments const& a, Context& context) {
                     "--highlight and --picture write files; name their beginning with -o");
     }
     auto const [scene, refiner] = context.Load(a.mesh);
-    auto const surface =
-        a.surface == "mesh" ? engine::MeasuredSurface::Mesh : engine::MeasuredSurface::Limit;
     double const orientation = context.GetCommon().IsLeftHanded() ? -1.0 : 1.0;
-    auto const json = ToJson(engine::Measure(scene, *refiner, surface, orientation));
+    auto const json = ToJson(engine::Measure(scene, *refiner, a.surface, orientation));
     if (!a.prefix.empty()) {
-        auto const curved = engine::AddVertexCurvature(scene, *refiner, surface, orientation);
+        auto const curved = engine::AddVertexCurvature(scene, *refiner, a.surface, orientation);
         std::vector<std::string> warnings;
         engine::WriteMesh(a.prefix + ".ply", curved, context.GetCommon().IsDouble(), &warnings);
         for (std::string const& warning : warnings) context.GetJob().Warn(warning);
@@ -80,9 +81,8 @@ Verb AddMeasure(CLI::App& app) {
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();
     verb->add_option("-o,--output", a->prefix,
                      "write PREFIX.ply with mean, gaussian, k1 and k2 per vertex");
-    verb->add_option("--surface", a->surface,
-                     "limit (default): exact curvature of the limit; mesh: of the mesh itself")
-        ->check(CLI::IsMember({"limit", "mesh"}));
+    AddWordOption(*verb, "--surface", a->surface, kMeasuredSurfaceWords,
+                  "limit (default): exact curvature of the limit; mesh: of the mesh itself");
     verb->add_flag("--highlight", a->hasHighlight,
                    "also write PREFIX.highlight.png: highlight lines of the mesh");
     verb->add_flag("--picture", a->hasPicture,

@@ -5,6 +5,9 @@
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
+#include "engine/cli/names.h"
+#include "engine/cli/option_rules.h"
+#include "engine/cli/word_option.h"
 #include "engine/differential/differential.h"
 #include "engine/differential/edit_reader.h"
 #include "engine/differential/polyline_file.h"
@@ -20,45 +23,35 @@ namespace {
 using far_ext::SubdivisionRule;
 
 /// Options that only meshes in differential space have.
-constexpr char const* kDifferentialOptions[] = {"--laplacian",  "--dirmag", "--spatial-first",
-                                                "--handle",     "--solver", "--edit",
-                                                "--keep-result"};
+std::vector<char const*> const kDifferentialOptions{"--laplacian",  "--dirmag", "--spatial-first",
+                                                    "--handle",     "--solver", "--edit",
+                                                    "--keep-result"};
 
 struct RefineArguments {
-    std::string mesh, output, space = "spatial", laplacian = "combinatorial", solver = "multigrid",
-                              editPath;
-    std::optional<std::string> rule;
-    int levels = 1, dirMagLevels = 0, spatialLevels = 0;
-    std::vector<int> handles;
-    bool toLimit = false, keepsResult = false, isCurve = false;
-
-    bool IsDifferential() const { return space == "differential"; }
+    std::string mesh, output, editPath;
+    std::optional<NamedRule> rule;
+    int levels = 1;
+    bool isDifferential = false, toLimit = false, keepsResult = false, isCurve = false;
+    engine::DifferentialOptions options;
 };
 
 /// The scheme follows the rule where one is named.
 SubdivisionRule ChooseRule(RefineArguments const& a, CommonOptions const& common,
                            far_ext::ControlMesh& cage) {
     if (!a.rule) return SubdivisionRule::Scheme;
-    auto const scheme = *a.rule == "catmark" ? Sdc::SCHEME_CATMARK : Sdc::SCHEME_LOOP;
-    if (common.scheme && scheme != cage.scheme) {
-        throw Error(ErrorCode::BadOption,
-                    fmt::format("--rule {} contradicts --scheme {}", *a.rule, *common.scheme));
+    if (common.scheme && a.rule->scheme != cage.scheme) {
+        throw Error(ErrorCode::BadOption, fmt::format("--rule {} contradicts --scheme {}",
+                                                      kRuleWords.GetWord(*a.rule), *common.scheme));
     }
-    cage.scheme = scheme;
+    cage.scheme = a.rule->scheme;
     far_ext::Validate(cage);  // triangles only, where the rule asks for them
-    return *a.rule == "butterfly" ? SubdivisionRule::Butterfly : SubdivisionRule::Scheme;
+    return a.rule->rule;
 }
 
 engine::DifferentialOptions MakeOptions(RefineArguments const& a, SubdivisionRule rule,
                                         bool isDouble) {
-    engine::DifferentialOptions options;
+    engine::DifferentialOptions options = a.options;
     options.rule = rule;
-    if (a.laplacian == "cotangent") options.laplacian = engine::Laplacian::Cotangent;
-    if (a.laplacian == "mesh") options.laplacian = engine::Laplacian::Mesh;
-    options.dirMagLevels = a.dirMagLevels;
-    options.spatialLevels = a.spatialLevels;
-    options.handles.assign(a.handles.begin(), a.handles.end());
-    options.usesCholesky = a.solver == "cholesky";
     options.tolerance =
         isDouble ? 1e-12 : 1e-8;  // what is written should be right to its last digits
     if (!a.editPath.empty()) options.edit = engine::ReadCurvatureEdit(a.editPath);
@@ -93,37 +86,26 @@ bool RefineDifferentially(RefineArguments const& a, Context& context, Subdivisio
 }
 
 void CheckSpace(RefineArguments const& a, CLI::App const& verb) {
-    if (a.IsDifferential()) {
-        if (a.toLimit) {
-            throw Error(
-                ErrorCode::BadOption,
-                "--limit: the limit of --space differential has no closed form; leave it out");
-        }
-        return;
-    }
-    for (char const* name : kDifferentialOptions) {
-        if (verb.count(name))
-            throw Error(ErrorCode::BadOption, fmt::format("{} needs --space differential", name));
+    if (!a.isDifferential)
+        return RefuseEach(verb, kDifferentialOptions, "needs --space differential");
+    if (a.toLimit) {
+        throw Error(ErrorCode::BadOption,
+                    "--limit: the limit of --space differential has no closed form; leave it out");
     }
 }
 
 /// Polylines by the rule that boundaries follow: cubic B-spline, or four-point for butterfly.
 int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& context) {
-    auto const refuse = [&](char const* name) {
-        if (verb.count(name))
-            throw Error(ErrorCode::BadOption,
-                        fmt::format("{} means nothing with --curve; leave it out", name));
-    };
-    std::for_each(std::begin(kDifferentialOptions), std::end(kDifferentialOptions), refuse);
-    refuse("--limit");
-    auto const rule =
-        a.rule == "butterfly" ? eval::CurveRule::FourPoint : eval::CurveRule::CubicBSpline;
+    for (auto const& flags : {kDifferentialOptions, {"--limit"}})
+        RefuseEach(verb, flags, "means nothing with --curve; leave it out");
+    bool const isButterfly = a.rule && a.rule->rule == SubdivisionRule::Butterfly;
+    auto const rule = isButterfly ? eval::CurveRule::FourPoint : eval::CurveRule::CubicBSpline;
     auto curves = engine::ReadPolylines(a.mesh);
     eval::CurveReport worst;
     size_t numPoints = 0;
     auto const start = std::chrono::steady_clock::now();
     for (eval::Curve& curve : curves) {
-        if (a.IsDifferential()) {
+        if (a.isDifferential) {
             eval::CurveReport report;
             curve = eval::RefineCurveDifferentially(curve, rule, a.levels, &report);
             worst.residual = std::max(worst.residual, report.residual);
@@ -155,7 +137,7 @@ int RunRefine(RefineArguments const& a, CLI::App const& verb, Context& context) 
     context.GetReport()["inputs"].back()["subdivision"] = engine::DescribeSubdivision(scene.cage);
     engine::Scene fine;
     bool isDone = true;
-    if (a.IsDifferential())
+    if (a.isDifferential)
         isDone = RefineDifferentially(a, context, rule, scene, fine);
     else
         fine = engine::RefineUniformly(scene, a.levels, a.toLimit, rule);
@@ -177,12 +159,10 @@ Verb AddRefine(CLI::App& app) {
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();
     verb->add_option("-o,--output", a->output, "mesh to write, .obj or .ply")->required();
     verb->add_option("--levels", a->levels, "how often (default 1)")->check(CLI::Range(0, 10));
-    verb->add_option(
-            "--space", a->space,
-            "spatial (default): rules on positions; differential: on mean-curvature normals")
-        ->check(CLI::IsMember({"spatial", "differential"}));
-    verb->add_option("--rule", a->rule, "loop, catmark or butterfly (default: the scheme's)")
-        ->check(CLI::IsMember({"loop", "catmark", "butterfly"}));
+    AddWordOption(*verb, "--space", a->isDifferential, kIsDifferentialWords,
+                  "spatial (default): rules on positions; differential: on mean-curvature normals");
+    AddWordOption(*verb, "--rule", a->rule, kRuleWords,
+                  "loop, catmark or butterfly (default: the scheme's)");
     verb->add_flag("--limit", a->toLimit, "move the result's vertices to the limit surface");
     verb->add_flag(
         "--curve", a->isCurve,
@@ -190,20 +170,19 @@ Verb AddRefine(CLI::App& app) {
     auto const differential = [](CLI::Option* option) {
         return option->group("Options of --space differential");
     };
-    differential(
-        verb->add_option("--laplacian", a->laplacian, "combinatorial (default), cotangent or mesh"))
-        ->check(CLI::IsMember({"combinatorial", "cotangent", "mesh"}));
-    differential(verb->add_option("--dirmag", a->dirMagLevels,
+    differential(AddWordOption(*verb, "--laplacian", a->options.laplacian, kLaplacianWords,
+                               "combinatorial (default), cotangent or mesh"));
+    differential(verb->add_option("--dirmag", a->options.dirMagLevels,
                                   "first levels done by direction and magnitude (default 0)"))
         ->check(CLI::Range(0, 10));
-    differential(verb->add_option("--spatial-first", a->spatialLevels,
+    differential(verb->add_option("--spatial-first", a->options.spatialLevels,
                                   "levels done in space before (default 0)"))
         ->check(CLI::Range(0, 10));
     differential(
-        verb->add_option("--handle", a->handles,
+        verb->add_option("--handle", a->options.handles,
                          "vertex that stays: one per component or boundary loop (repeatable)"));
-    differential(verb->add_option("--solver", a->solver, "multigrid (default) or cholesky"))
-        ->check(CLI::IsMember({"multigrid", "cholesky"}));
+    differential(AddWordOption(*verb, "--solver", a->options.usesCholesky, kUsesCholeskyWords,
+                               "multigrid (default) or cholesky"));
     differential(
         verb->add_option("--edit", a->editPath, "JSON: curvature factors, rotations, filter"));
     differential(verb->add_flag("--keep-result", a->keepsResult,

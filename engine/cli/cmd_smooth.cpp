@@ -6,60 +6,58 @@
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
+#include "engine/cli/names.h"
+#include "engine/cli/option_rules.h"
+#include "engine/cli/word_option.h"
 #include "engine/io/mesh_writer.h"
 #include "engine/measure/mesh_picture.h"
 #include "engine/scene/subdivision_names.h"
 #include "engine/smooth/smooth.h"
+#include "far_ext/differential/laplacian.h"
 #include "far_ext/error.h"
-#include "far_ext/topology/boundary.h"
 
 namespace limn::cli {
 
 namespace {
 
 struct SmoothArguments {
-    std::string mesh, output, widthMap, widthEdges, widthTexture,
-        refinement = "quadrisect", solver = "cg", boundary = "fixed", picture;
+    std::string mesh, output, widthMap, widthEdges, widthTexture, picture;
     std::vector<double> view{1.0, 0.6, 0.8};
     double width = 0.0, widthFactor = 0.12, widthScale = 0.12;
     bool isLocal = false;
     engine::SmoothOptions options;
+
+    bool IsBisection() const { return options.refinement == engine::SmoothRefinement::Bisect; }
 };
 
-/// Options that exclude each other.
-void Refuse(CLI::App const& verb, std::vector<char const*> const& names) {
-    char const* first = nullptr;
-    for (char const* name : names) {
-        if (verb.count(name) == 0) continue;
-        if (first)
-            throw Error(ErrorCode::BadOption,
-                        fmt::format("{} and {} exclude each other", first, name));
-        first = name;
+void CheckWidths(SmoothArguments const& a, CLI::App const& verb) {
+    RefuseTogether(verb, {"--width", "--width-factor"});
+    RefuseTogether(verb, {"--local", "--width-map", "--width-edges", "--width-texture"});
+    for (char const* other : {"--local", "--width-map", "--width-edges"}) {
+        for (char const* flag : {"--width", "--width-factor"}) RefuseTogether(verb, {other, flag});
     }
+    if (!a.isLocal) RefuseEach(verb, {"--width-scale"}, "needs --local");
+}
+
+void CheckSolver(SmoothArguments const& a, CLI::App const& verb) {
+    RefuseTogether(verb, {"--sweeps", "--iterations", "--tolerance"});
+    if (std::isnan(a.options.tolerance))
+        throw Error(ErrorCode::BadOption, "--tolerance: give a number from 1e-14 to 1");
+    using Solver = eval::CascadeSolver;
+    Solver const solver = a.options.solver;
+    if (solver != Solver::ConjugateGradients) {
+        RefuseEach(verb, {"--tolerance"},
+                   fmt::format("is for --solver cg, not {}", kCascadeSolverWords.GetWord(solver)));
+    }
+    if (solver == Solver::Exact)
+        RefuseEach(verb, {"--sweeps", "--iterations"},
+                   "means nothing to --solver exact; leave it out");
 }
 
 void CheckOptions(SmoothArguments const& a, CLI::App const& verb) {
     engine::RequireMeshEnding(a.output);
-    Refuse(verb, {"--width", "--width-factor"});
-    Refuse(verb, {"--local", "--width-map", "--width-edges", "--width-texture"});
-    for (char const* other : {"--local", "--width-map", "--width-edges"}) {
-        for (char const* name : {"--width", "--width-factor"}) Refuse(verb, {other, name});
-    }
-    if (verb.count("--width-scale") && !a.isLocal)
-        throw Error(ErrorCode::BadOption, "--width-scale needs --local");
-    Refuse(verb, {"--sweeps", "--iterations", "--tolerance"});
-    if (std::isnan(a.options.tolerance))
-        throw Error(ErrorCode::BadOption, "--tolerance: give a number from 1e-14 to 1");
-    if (a.solver != "cg" && verb.count("--tolerance"))
-        throw Error(ErrorCode::BadOption,
-                    fmt::format("--tolerance is for --solver cg, not {}", a.solver));
-    if (a.solver == "exact") {
-        for (char const* name : {"--sweeps", "--iterations"}) {
-            if (verb.count(name))
-                throw Error(ErrorCode::BadOption,
-                            fmt::format("{} means nothing to --solver exact; leave it out", name));
-        }
-    }
+    CheckWidths(a, verb);
+    CheckSolver(a, verb);
     for (auto const& [name, value] : {std::pair{"--width", a.width},
                                       {"--width-factor", a.widthFactor},
                                       {"--width-scale", a.widthScale}}) {
@@ -67,22 +65,19 @@ void CheckOptions(SmoothArguments const& a, CLI::App const& verb) {
             throw Error(ErrorCode::BadOption,
                         fmt::format("{}: {} is no width; give a number from 0 up", name, value));
     }
-    Refuse(verb, {"--graph", "--preserve-volume"});
-    Refuse(verb, {"--limit-width", "--keep-result"});
-    int const maxLevels = a.refinement == "bisect" ? 20 : 10;
+    RefuseTogether(verb, {"--graph", "--preserve-volume"});
+    RefuseTogether(verb, {"--limit-width", "--keep-result"});
+    int const maxLevels = a.IsBisection() ? 20 : 10;
     if (a.options.levels > maxLevels) {
-        throw Error(ErrorCode::BadOption,
-                    fmt::format("--levels: {} is not from 1 to {} with --refinement {}",
-                                a.options.levels, maxLevels, a.refinement));
+        throw Error(
+            ErrorCode::BadOption,
+            fmt::format("--levels: {} is not from 1 to {} with --refinement {}", a.options.levels,
+                        maxLevels, kSmoothRefinementWords.GetWord(a.options.refinement)));
     }
 }
 
 engine::SmoothOptions MakeOptions(SmoothArguments const& a, bool isDouble) {
     engine::SmoothOptions options = a.options;
-    if (a.refinement == "bisect") options.refinement = engine::SmoothRefinement::Bisect;
-    if (a.boundary == "natural") options.boundary = far_ext::BoundaryRule::Natural;
-    if (a.solver == "exact") options.solver = eval::CascadeSolver::Exact;
-    if (a.solver == "jacobi") options.solver = eval::CascadeSolver::Jacobi;
     bool const isCounted = options.sweeps > 0 || options.iterations > 0;
     if (options.solver == eval::CascadeSolver::Jacobi && !isCounted)
         options.sweeps = 1;  // as [Diewald02] always does
@@ -170,7 +165,7 @@ int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     CheckOptions(a, verb);
     auto [scene, refiner] =
         context.Load(a.mesh, Context::Defects::Keep);  // engine::Smooth warns of them, or refuses
-    ChooseScheme(context.GetCommon(), a.refinement == "bisect", scene.cage);
+    ChooseScheme(context.GetCommon(), a.IsBisection(), scene.cage);
     far_ext::Validate(scene.cage);
     context.GetReport()["inputs"].back()["subdivision"] = engine::DescribeSubdivision(scene.cage);
     bool const isDouble = context.GetCommon().IsDouble();
@@ -227,12 +222,11 @@ Verb AddSmooth(CLI::App& app) {
         "--width-texture", a->widthTexture,
         "image through the texture coordinates, 0 to 1 times --width or --width-factor"));
     auto const solve = [](CLI::Option* option) { return option->group("Solving"); };
-    solve(verb->add_option("--refinement", a->refinement,
-                           "quadrisect (default): triangles in four, other faces into quads "
-                           "(--scheme catmark: triangles, too); bisect: triangles in two"))
-        ->check(CLI::IsMember({"quadrisect", "bisect"}));
-    solve(verb->add_option("--solver", a->solver, "cg (default), jacobi or exact"))
-        ->check(CLI::IsMember({"exact", "cg", "jacobi"}));
+    solve(AddWordOption(*verb, "--refinement", a->options.refinement, kSmoothRefinementWords,
+                        "quadrisect (default): triangles in four, other faces into quads "
+                        "(--scheme catmark: triangles, too); bisect: triangles in two"));
+    solve(AddWordOption(*verb, "--solver", a->options.solver, kCascadeSolverWords,
+                        "cg (default), jacobi or exact"));
     solve(verb->add_option(
               "--sweeps", a->options.sweeps,
               "on the finest level, more on coarser ones by the a-priori rule (jacobi: default 1)"))
@@ -243,10 +237,8 @@ Verb AddSmooth(CLI::App& app) {
                            "cg: to this residual on every level (default 1e-6)"))
         ->check(CLI::Range(1e-14, 1.0));
     auto const keep = [](CLI::Option* option) { return option->group("What stays"); };
-    keep(verb->add_option(
-             "--boundary-rule", a->boundary,
-             "fixed (default); natural: free, its triangles degenerate with the levels"))
-        ->check(CLI::IsMember({"fixed", "natural"}));
+    keep(AddWordOption(*verb, "--boundary-rule", a->options.boundary, kBoundaryRuleWords,
+                       "fixed (default); natural: free, its triangles degenerate with the levels"));
     keep(verb->add_flag("--keep-creases", a->options.keepsCreases,
                         "sharp edges and corners stay sharp: the filter does not act across them"));
     keep(verb->add_flag("--preserve-volume", a->options.preservesVolume,

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include "engine/scene/job.h"
+#include "far_ext/enum_words.h"
 
 namespace limn::cli {
 
@@ -32,5 +34,12 @@ private:
     Clock::time_point _start, _lastShown;
     bool _isLineOpen = false;
 };
+
+/// Nothing is the style that suits what stderr is.
+inline constexpr auto kProgressWords =
+    MakeEnumWords<std::optional<Console::Style>>("progress", {{std::nullopt, "auto"},
+                                                              {Console::Style::Bar, "bar"},
+                                                              {Console::Style::Lines, "lines"},
+                                                              {Console::Style::None, "none"}});
 
 }  // namespace limn::cli

@@ -24,9 +24,8 @@ std::string GetVersion() {
 namespace {
 
 Console::Style ChooseStyle(CommonOptions const& common) {
-    if (common.isQuiet || common.progress == "none") return Console::Style::None;
-    if (common.progress == "bar") return Console::Style::Bar;
-    if (common.progress == "lines") return Console::Style::Lines;
+    if (common.isQuiet) return Console::Style::None;
+    if (common.progress) return *common.progress;
     return ::isatty(STDERR_FILENO) ? Console::Style::Bar : Console::Style::Lines;
 }
 

@@ -11,6 +11,7 @@
 #include "engine/cli/cli.h"
 #include "engine/cli/option_names.h"
 #include "engine/cli/signals.h"
+#include "engine/cli/word_option.h"
 #include "far_ext/error.h"
 
 namespace {
@@ -43,8 +44,8 @@ void AddCommonOptions(CLI::App& app, CommonOptions& o) {
               ->check(CLI::IsMember({"float", "double"})));
     group(app.add_flag("--quiet", o.isQuiet, "no progress, no warnings"));
     group(app.add_flag("--verbose", o.isVerbose, "say more"));
-    group(app.add_option("--progress", o.progress, "auto (default), bar, lines or none")
-              ->check(CLI::IsMember({"auto", "bar", "lines", "none"})));
+    group(AddWordOption(app, "--progress", o.progress, limn::cli::kProgressWords,
+                        "auto (default), bar, lines or none"));
 }
 
 int ChooseThreads(CommonOptions const& options) {

@@ -115,12 +115,6 @@ void ForEachBlockOfChannels(int length, Work const& work) {
 
 }  // namespace
 
-char const* GetName(SolveMethod method) {
-    constexpr char const* kNames[] = {"auto",      "progressive", "weighted",
-                                      "chebyshev", "cg",          "direct"};
-    return kNames[static_cast<int>(method)];
-}
-
 double FindSize(std::span<double const> values, int length) {
     if (values.empty()) return 1.0;
     size_t const n = length;

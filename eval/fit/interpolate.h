@@ -7,6 +7,7 @@
 
 #include "eval/fit/limit_problem.h"
 #include "eval/fit/singular_components.h"
+#include "far_ext/enum_words.h"
 
 namespace limn::eval {
 
@@ -15,8 +16,17 @@ namespace limn::eval {
 /// factorisation.
 enum class SolveMethod { Automatic, Progressive, Weighted, Chebyshev, ConjugateGradients, Direct };
 
-/// "progressive", "weighted", "chebyshev", "cg", "direct", "auto"
-char const* GetName(SolveMethod method);
+inline constexpr auto kSolveMethodWords =
+    MakeEnumWords<SolveMethod>("method", {{SolveMethod::Progressive, "progressive"},
+                                          {SolveMethod::Weighted, "weighted"},
+                                          {SolveMethod::Chebyshev, "chebyshev"},
+                                          {SolveMethod::ConjugateGradients, "cg"},
+                                          {SolveMethod::Direct, "direct"},
+                                          {SolveMethod::Automatic, "auto"}});
+
+constexpr char const* GetName(SolveMethod method) {
+    return kSolveMethodWords.GetWord(method);
+}
 
 struct InterpolateOptions {
     SolveMethod method = SolveMethod::Automatic;

@@ -16,8 +16,6 @@ using Targets = SimdEvaluator::Targets;
 
 namespace {
 
-constexpr std::array kNames{"simd", "osd-cpu", "osd-omp"};
-
 /// Rows first..last-1 through one of OpenSubdiv's evaluators. Its own ranges are not to be trusted
 /// (see SimdEvaluator), so the table's pointers and the targets' are moved, and it starts at 0.
 template <class Evaluator>
@@ -52,16 +50,6 @@ void EvaluateRange(float const* source, BufferDescriptor const& sourceDesc, Targ
 }
 
 }  // namespace
-
-char const* GetName(EvaluatorKind kind) {
-    return kNames[static_cast<size_t>(kind)];
-}
-
-std::optional<EvaluatorKind> FindEvaluator(std::string_view name) {
-    auto const found = std::find(kNames.begin(), kNames.end(), name);
-    if (found == kNames.end()) return {};
-    return static_cast<EvaluatorKind>(found - kNames.begin());
-}
 
 StencilEvaluator::StencilEvaluator(EvaluatorKind kind, far_ext::StencilGroups table) : _kind(kind) {
     if (kind == EvaluatorKind::Simd)

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "eval/stencils/simd_evaluator.h"
+#include "far_ext/enum_words.h"
 
 namespace limn::eval {
 
@@ -18,9 +18,14 @@ enum class EvaluatorKind {
              ///< the others in one run: its idle threads keep the cores from them
 };
 
-/// "simd", "osd-cpu" or "osd-omp"
-char const* GetName(EvaluatorKind kind);
-std::optional<EvaluatorKind> FindEvaluator(std::string_view name);
+inline constexpr auto kEvaluatorWords =
+    MakeEnumWords<EvaluatorKind>("evaluator", {{EvaluatorKind::Simd, "simd"},
+                                               {EvaluatorKind::OsdCpu, "osd-cpu"},
+                                               {EvaluatorKind::OsdOmp, "osd-omp"}});
+
+constexpr char const* GetName(EvaluatorKind kind) {
+    return kEvaluatorWords.GetWord(kind);
+}
 
 /// A stencil table and what applies it, chosen at run time.
 class StencilEvaluator {

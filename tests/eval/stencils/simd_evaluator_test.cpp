@@ -497,9 +497,9 @@ TEST(StencilEvaluator, AllKindsAgreeWithDerivatives) {
 #endif
 
 TEST(StencilEvaluator, NamesAreFound) {
-    EXPECT_EQ(FindEvaluator("osd-omp"), EvaluatorKind::OsdOmp);
-    EXPECT_EQ(FindEvaluator("simd"), EvaluatorKind::Simd);
-    EXPECT_FALSE(FindEvaluator("gpu"));
+    EXPECT_EQ(kEvaluatorWords.Find("osd-omp"), EvaluatorKind::OsdOmp);
+    EXPECT_EQ(kEvaluatorWords.Find("simd"), EvaluatorKind::Simd);
+    EXPECT_FALSE(kEvaluatorWords.Find("gpu"));
 }
 
 }  // namespace

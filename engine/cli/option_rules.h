@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace limn::cli {
+
+// What options of a verb have to do with each other. \throws Error BadOption
+
+/// Refuses two of these flags together.
+void RefuseTogether(CLI::App const& verb, std::vector<char const*> const& flags);
+
+/// Refuses each of these flags, which `why` follows in the message: "--sweeps needs ...".
+void RefuseEach(CLI::App const& verb, std::vector<char const*> const& flags,
+                std::string const& why);
+
+}  // namespace limn::cli
