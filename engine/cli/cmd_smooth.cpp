@@ -13,8 +13,8 @@
 #include "engine/measure/mesh_picture.h"
 #include "engine/scene/subdivision_names.h"
 #include "engine/smooth/smooth.h"
-#include "far_ext/differential/laplacian.h"
 #include "far_ext/error.h"
+#include "far_ext/topology/boundary.h"
 
 namespace limn::cli {
 
