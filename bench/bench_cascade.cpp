@@ -171,74 +171,118 @@ void Judge(char const* what, double value, double target, bool isUpperBound) {
     std::fflush(stdout);
 }
 
-void BenchLevel(Case const& subject, int numRounds) {
-    Level limn(subject);
-    double const size = test::BoxDiagonal(subject.scene.positions),
-                 diffusion = subject.width * subject.width / 2;
-    EigenCascade eigen = MakePeer(subject, limn.start);
-    EigenCascade::Points const metric = ToPoints(limn.metric);
-    EigenCascade::Points x = metric;
-    limn.BuildWeights();
-    limn.Sweep();
-    eigen.Assemble(metric, diffusion);
-    eigen.Sweep(x, kNumSweeps, eval::kJacobiDamping);
-    double const miss = (ToPoints(limn.next) - x).cwiseAbs().maxCoeff() / size;
-    Check(miss < 1e-6 && (x - metric).cwiseAbs().maxCoeff() > 1e-4 * size,
-          "a level as sparse matrices in double filter it");
-    OsdSweep osd3(limn, 3), osd4(limn, 4);
-    eval::SweepJacobi(limn.level, limn.op, limn.metric, limn.start, limn.next);
-    for (OsdSweep* osd : {&osd3, &osd4}) {
-        osd->Run();
-        Check(osd->FindDifference(limn.next) < 1e-6 * size, "a sweep as OpenSubdiv evaluates it");
+/// One level in the hands of limn and of its peers.
+struct LevelPeers {
+    Level limn;
+    double size, diffusion;
+    EigenCascade eigen;
+    EigenCascade::Points metric, x;
+    OsdSweep osd3, osd4;
+
+    explicit LevelPeers(Case const& subject)
+        : limn(WithWeights(subject)),
+          size(test::BoxDiagonal(subject.scene.positions)),
+          diffusion(subject.width * subject.width / 2),
+          eigen(MakePeer(subject, limn.start)),
+          metric(ToPoints(limn.metric)),
+          x(metric),
+          osd3(limn, 3),
+          osd4(limn, 4) {}
+
+    void Filter() {
+        limn.BuildWeights();
+        limn.Sweep();
+    }
+    void SweepOnce() { eval::SweepJacobi(limn.level, limn.op, limn.metric, limn.start, limn.next); }
+    void SweepWithEigen() { eigen.Sweep(x, kNumSweeps, eval::kJacobiDamping); }
+    void FilterWithEigen() {
+        eigen.Assemble(metric, diffusion);
+        SweepWithEigen();
     }
 
-    fmt::print(
-        "\nOne level of {} vertices: weights and {} sweeps; float differs from Eigen's double by "
-        "{:.1e} of the diagonal\n",
-        limn.level.GetNumRows(), kNumSweeps, miss);
-    double const items = limn.level.numUnknowns;
-    Rounds rounds(numRounds);
-    size_t ours[2], sweeps[2];
+private:
+    /// The sweeps as tables need them.
+    static Level WithWeights(Case const& subject) {
+        Level level(subject);
+        level.BuildWeights();
+        return level;
+    }
+};
+
+/// \return  how far limn is from Eigen, in diagonals
+double CheckLevel(LevelPeers& peers) {
+    peers.Filter();
+    peers.FilterWithEigen();
+    double const miss = (ToPoints(peers.limn.next) - peers.x).cwiseAbs().maxCoeff() / peers.size;
+    Check(miss < 1e-6 && (peers.x - peers.metric).cwiseAbs().maxCoeff() > 1e-4 * peers.size,
+          "a level as sparse matrices in double filter it");
+    peers.SweepOnce();
+    for (OsdSweep* osd : {&peers.osd3, &peers.osd4}) {
+        osd->Run();
+        Check(osd->FindDifference(peers.limn.next) < 1e-6 * peers.size,
+              "a sweep as OpenSubdiv evaluates it");
+    }
+    return miss;
+}
+
+/// Numbers of the variants; limn's with one thread and with two.
+struct LevelVariants {
+    std::array<size_t, 2> level, sweep;
+    size_t eigen, osd3, osd4;
+};
+
+LevelVariants AddVariants(LevelPeers& peers, Rounds& rounds) {
+    double const items = peers.limn.level.numUnknowns;
+    LevelVariants variants{};
     for (int numThreads : {1, 2}) {
         auto const add = [&](char const* what, auto work) {
             return rounds.Add(
                 fmt::format("limn: {}, T{}", what, numThreads),
                 [work, numThreads] { OnThreads(numThreads, work); }, items);
         };
-        add("weights", [&] { limn.BuildWeights(); });
-        sweeps[numThreads - 1] = add("a sweep", [&] {
-            eval::SweepJacobi(limn.level, limn.op, limn.metric, limn.start, limn.next);
-        });
-        ours[numThreads - 1] = add("weights and 3 sweeps", [&] {
-            limn.BuildWeights();
-            limn.Sweep();
-        });
+        size_t const at = static_cast<size_t>(numThreads) - 1;
+        add("weights", [&] { peers.limn.BuildWeights(); });
+        variants.sweep[at] = add("a sweep", [&] { peers.SweepOnce(); });
+        variants.level[at] = add("weights and 3 sweeps", [&] { peers.Filter(); });
     }
-    size_t const theirs = rounds.Add(
-        "Eigen: assembly and 3 sweeps",
-        [&] {
-            eigen.Assemble(metric, diffusion);
-            eigen.Sweep(x, kNumSweeps, eval::kJacobiDamping);
-        },
-        items);
-    rounds.Add("Eigen: 3 sweeps", [&] { eigen.Sweep(x, kNumSweeps, eval::kJacobiDamping); }, items);
-    size_t const three =
-        rounds.Add("Osd::CpuEvaluator: a sweep, length 3", [&] { osd3.Run(); }, items);
-    size_t const four =
-        rounds.Add("Osd::CpuEvaluator: a sweep, length 4", [&] { osd4.Run(); }, items);
-    rounds.Run("vertices");
-    rounds.Compare("the level against Eigen, T1", ours[0], theirs, 15.0);
-    rounds.Compare("the level with two threads against Eigen with one", ours[1], theirs, 20.0);
-    rounds.Compare("a sweep against OpenSubdiv, length 3, T1", sweeps[0], three, 2.0);
-    rounds.Compare("a sweep against OpenSubdiv, length 4, T1", sweeps[0], four, 2.0);
-    double const bandwidth = limn.GetBytesOfSweep() / rounds.Get(sweeps[0]).median;
+    variants.eigen =
+        rounds.Add("Eigen: assembly and 3 sweeps", [&] { peers.FilterWithEigen(); }, items);
+    rounds.Add("Eigen: 3 sweeps", [&] { peers.SweepWithEigen(); }, items);
+    variants.osd3 =
+        rounds.Add("Osd::CpuEvaluator: a sweep, length 3", [&] { peers.osd3.Run(); }, items);
+    variants.osd4 =
+        rounds.Add("Osd::CpuEvaluator: a sweep, length 4", [&] { peers.osd4.Run(); }, items);
+    return variants;
+}
+
+void ReportBandwidth(Level const& level, Rounds const& rounds, size_t sweep) {
+    double const items = level.level.numUnknowns,
+                 bandwidth = level.GetBytesOfSweep() / rounds.Get(sweep).median;
     fmt::print(
         "  a sweep must move {:.0f} bytes per vertex (x, X0, result 48, entries {:.0f} with index "
         "and weight, mass, diagonal, offset 12): {:.1f} GB/s\n",
-        limn.GetBytesOfSweep() / items,
-        8.0 * static_cast<double>(limn.level.neighbours.size()) / items, bandwidth * 1e-9);
+        level.GetBytesOfSweep() / items,
+        8.0 * static_cast<double>(level.level.neighbours.size()) / items, bandwidth * 1e-9);
     Judge("a sweep's bandwidth over that of copying, T1", bandwidth / rounds.GetCopyBandwidth(),
           0.5, false);
+}
+
+void BenchLevel(Case const& subject, int numRounds) {
+    LevelPeers peers(subject);
+    double const miss = CheckLevel(peers);
+    fmt::print(
+        "\nOne level of {} vertices: weights and {} sweeps; float differs from Eigen's double by "
+        "{:.1e} of the diagonal\n",
+        peers.limn.level.GetNumRows(), kNumSweeps, miss);
+    Rounds rounds(numRounds);
+    LevelVariants const variants = AddVariants(peers, rounds);
+    rounds.Run("vertices");
+    auto const& [level, sweep, eigen, osd3, osd4] = variants;
+    rounds.Compare("the level against Eigen, T1", level[0], eigen, 15.0);
+    rounds.Compare("the level with two threads against Eigen with one", level[1], eigen, 20.0);
+    rounds.Compare("a sweep against OpenSubdiv, length 3, T1", sweep[0], osd3, 2.0);
+    rounds.Compare("a sweep against OpenSubdiv, length 4, T1", sweep[0], osd4, 2.0);
+    ReportBandwidth(peers.limn, rounds, sweep[0]);
 }
 
 void BenchWhole(Case const& subject, int numRounds) {

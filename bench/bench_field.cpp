@@ -45,68 +45,89 @@ struct PeerProblem {
     }
 };
 
-void Run(int numRounds) {
-    engine::Scene const scene = test::MakeTriangleTorus(450, 450);
-    auto const refiner = far_ext::CreateRefiner(scene.cage);
-    auto const level = refiner->GetLevel(0);
-    std::vector<double> rho(static_cast<size_t>(level.GetNumVertices()), 0.0),
-        kappa(static_cast<size_t>(level.GetNumFaces()), 0.0);
-    rho[1] = kappa[1] = 1.0;
-    rho[rho.size() / 2] = kappa[kappa.size() / 2] = -1.0;
-    double const size = static_cast<double>(level.GetNumVertices());
-    fmt::print("{} vertices, {} faces, one thread\n", level.GetNumVertices(), level.GetNumFaces());
+/// A torus of triangles with one source and one sink, one vortex and its opposite.
+struct Problem {
+    engine::Scene scene = test::MakeTriangleTorus(450, 450);
+    std::unique_ptr<Far::TopologyRefiner> refiner = far_ext::CreateRefiner(scene.cage);
+    Far::TopologyLevel level = refiner->GetLevel(0);
+    std::vector<double> rho, kappa;
 
-    auto const design = [&] {
-        return std::make_unique<eval::FieldDesigner>(level, scene.positions,
-                                                     eval::AtBoundary::Tangent);
-    };
-    auto const designer = design();
-    auto const gradient = designer->MakeGradient(rho), vortex = designer->MakeVortex(kappa);
-    auto const inflow = designer->FindInflow(gradient), curl = designer->FindCurl(vortex);
+    Problem()
+        : rho(static_cast<size_t>(level.GetNumVertices()), 0.0),
+          kappa(static_cast<size_t>(level.GetNumFaces()), 0.0) {
+        rho[1] = kappa[1] = 1.0;
+        rho[rho.size() / 2] = kappa[kappa.size() / 2] = -1.0;
+    }
+
+    double GetSize() const { return static_cast<double>(level.GetNumVertices()); }
+
+    eval::FieldDesigner MakeDesigner() const {
+        return {level, scene.positions, eval::AtBoundary::Tangent};
+    }
+};
+
+void CheckResults(Problem const& problem, eval::FieldDesigner& designer) {
+    std::vector<double> const &rho = problem.rho, &kappa = problem.kappa;
+    auto const gradient = designer.MakeGradient(rho), vortex = designer.MakeVortex(kappa);
+    auto const inflow = designer.FindInflow(gradient), curl = designer.FindCurl(vortex);
     for (size_t i = 0; i < rho.size(); ++i)
         Check(std::abs(inflow[i] + rho[i]) < 1e-10, "the flow asked for");
     for (size_t i = 0; i < kappa.size(); ++i)
         Check(std::abs(curl[i] - kappa[i]) < 1e-10, "the circulation asked for");
+}
 
-    PeerProblem const problem(level, designer->GetStars().edge, rho);
-    Eigen::VectorXd x;
+/// Adds another factorisation of the equations of the sources. \return  the variant's number
+template <class Solver>
+size_t AddPeer(char const* name, PeerProblem const& problem, Rounds& rounds) {
+    auto const solve = [&problem]() -> Eigen::VectorXd {
+        return Solver(problem.matrix).solve(problem.right);
+    };
+    problem.CheckAnswer(solve(), name);
+    return rounds.Add(name, solve, static_cast<double>(problem.right.size() + 1));
+}
+
+void Report(Rounds const& rounds, char const* what, size_t variant, double target) {
+    double const seconds = rounds.Get(variant).median;
+    fmt::print("  => {}: {:.3f} s, target at most {} s: {}\n", what, seconds, target,
+               seconds <= target ? "reached" : "MISSED");
+}
+
+void Run(int numRounds) {
+    Problem const problem;
+    double const size = problem.GetSize();
+    fmt::print("{} vertices, {} faces, one thread\n", problem.level.GetNumVertices(),
+               problem.level.GetNumFaces());
+    auto designer = problem.MakeDesigner();
+    CheckResults(problem, designer);
+
+    PeerProblem const peers(problem.level, designer.GetStars().edge, problem.rho);
     Rounds rounds(numRounds);
-    size_t const sources =
-        rounds.Add("limn, sources from nothing", [&] { design()->MakeGradient(rho); }, size);
-    size_t const vortices =
-        rounds.Add("limn, vortices from nothing", [&] { design()->MakeVortex(kappa); }, 2.0 * size);
+    auto const add = [&](char const* name, double items, auto const& work) {
+        return rounds.Add(name, work, items);
+    };
+    size_t const sources = add("limn, sources from nothing", size,
+                               [&] { problem.MakeDesigner().MakeGradient(problem.rho); });
+    size_t const vortices = add("limn, vortices from nothing", 2.0 * size,
+                                [&] { problem.MakeDesigner().MakeVortex(problem.kappa); });
     size_t const again =
-        rounds.Add("limn, sources of other strengths", [&] { designer->MakeGradient(rho); }, size);
-    size_t const vorticesAgain = rounds.Add(
-        "limn, vortices of other strengths", [&] { designer->MakeVortex(kappa); }, 2.0 * size);
-    auto const solveByAmd = [&] {
-        x = Eigen::SimplicialLLT<Matrix>(problem.matrix).solve(problem.right);
-    };
-    solveByAmd();
-    problem.CheckAnswer(x, "minimum degree");
-    size_t const amd = rounds.Add("Eigen, minimum degree, sources", solveByAmd, size);
+        add("limn, sources of other strengths", size, [&] { designer.MakeGradient(problem.rho); });
+    size_t const vorticesAgain = add("limn, vortices of other strengths", 2.0 * size,
+                                     [&] { designer.MakeVortex(problem.kappa); });
+    size_t const amd =
+        AddPeer<Eigen::SimplicialLLT<Matrix>>("Eigen, minimum degree, sources", peers, rounds);
 #ifdef LIMN_HAS_CHOLMOD
-    auto const solveByCholmod = [&] {
-        x = Eigen::CholmodSupernodalLLT<Matrix>(problem.matrix).solve(problem.right);
-    };
-    solveByCholmod();
-    problem.CheckAnswer(x, "CHOLMOD");
-    size_t const cholmod = rounds.Add("CHOLMOD, supernodal, sources", solveByCholmod, size);
+    size_t const cholmod =
+        AddPeer<Eigen::CholmodSupernodalLLT<Matrix>>("CHOLMOD, supernodal, sources", peers, rounds);
 #endif
     rounds.Run("unknowns");
     rounds.Compare("against minimum degree", sources, amd);
 #ifdef LIMN_HAS_CHOLMOD
     rounds.Compare("against CHOLMOD", sources, cholmod);
 #endif
-    auto const report = [&](char const* what, size_t variant, double target) {
-        double const seconds = rounds.Get(variant).median;
-        fmt::print("  => {}: {:.3f} s, target at most {} s: {}\n", what, seconds, target,
-                   seconds <= target ? "reached" : "MISSED");
-    };
-    report("sources from nothing", sources, 5.0);
-    report("vortices from nothing", vortices, 5.0);
-    report("sources of other strengths", again, 0.2);
-    report("vortices of other strengths", vorticesAgain, 0.2);
+    Report(rounds, "sources from nothing", sources, 5.0);
+    Report(rounds, "vortices from nothing", vortices, 5.0);
+    Report(rounds, "sources of other strengths", again, 0.2);
+    Report(rounds, "vortices of other strengths", vorticesAgain, 0.2);
 }
 
 }  // namespace

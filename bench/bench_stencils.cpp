@@ -68,36 +68,68 @@ void PrintFigure(char const* what, double value, char const* unit,
     fmt::print("\n");
 }
 
-void MeasureMesh(char const* name, engine::Scene const& scene, int level, Targets const& targets,
-                 int numRounds) {
-    auto const refiner = far_ext::CreateRefiner(scene.cage);
-    refiner->RefineUniform(Far::TopologyRefiner::UniformOptions(level));
-    auto const far = MakeFarTable(*refiner);
-    CompiledStencils const ours(far_ext::BuildRefinedStencils(*refiner));
-    CompiledStencils const fromFar = CompiledStencils::Compile(*far);
-    double const numRows = far->GetNumStencils();
-    fmt::print(
-        "\n{}, level {}: {} control and {} refined vertices, {:.1f} weights each; {} on this CPU\n",
-        name, level, far->GetNumControlVertices(), far->GetNumStencils(),
-        static_cast<double>(far->GetWeights().size()) / numRows,
-        eval::GetName(eval::GetInstructionSet()));
+/// A refined mesh with the tables of limn and of its peers, and room for their results.
+struct Subject {
+    std::unique_ptr<Far::TopologyRefiner> refiner;
+    std::unique_ptr<Far::StencilTable const> far;
+    CompiledStencils ours, fromFar;
+    std::vector<float> source3, source4, ours3, ours4, theirs3, theirs4;
 
-    auto const source3 = MakeValues(far->GetNumControlVertices(), 3, 1),
-               source4 = MakeValues(far->GetNumControlVertices(), 4, 2);
-    std::vector<float> ours3(static_cast<size_t>(numRows) * 3), theirs3(ours3),
-        ours4(static_cast<size_t>(numRows) * 4), theirs4(ours4);
-    EvaluateWithOsd(*far, source3.data(), theirs3.data(), 3);
-    EvaluateWithOsd(*far, source4.data(), theirs4.data(), 4);
-    EvaluateCompiled(ours, source3, ours3, 3);
-    EvaluateCompiled(ours, source4, ours4, 4);
-    CheckEqual(ours3, theirs3, "length 3");
-    CheckEqual(ours4, theirs4, "length 4");
-    WithSse2([&] { EvaluateCompiled(ours, source3, ours3, 3); });
-    CheckEqual(ours3, theirs3, "length 3 with SSE2");
-    EvaluateCompiled(fromFar, source3, ours3, 3);
-    CheckEqual(ours3, theirs3, "the compiled table of Far");
+    Subject(engine::Scene const& scene, int level)
+        : refiner(Refine(scene, level)),
+          far(MakeFarTable(*refiner)),
+          ours(far_ext::BuildRefinedStencils(*refiner)),
+          fromFar(CompiledStencils::Compile(*far)),
+          source3(MakeValues(far->GetNumControlVertices(), 3, 1)),
+          source4(MakeValues(far->GetNumControlVertices(), 4, 2)),
+          ours3(static_cast<size_t>(far->GetNumStencils()) * 3),
+          ours4(static_cast<size_t>(far->GetNumStencils()) * 4),
+          theirs3(ours3),
+          theirs4(ours4) {}
 
-    Rounds rounds(numRounds);
+    double GetNumRows() const { return far->GetNumStencils(); }
+
+    void EvaluateOsd3() { EvaluateWithOsd(*far, source3.data(), theirs3.data(), 3); }
+    void EvaluateOsd4() { EvaluateWithOsd(*far, source4.data(), theirs4.data(), 4); }
+    void EvaluatePlain() { EvaluatePlainRows(*far, source3.data(), theirs3.data()); }
+    void Evaluate3() { EvaluateCompiled(ours, source3, ours3, 3); }
+    void Evaluate4() { EvaluateCompiled(ours, source4, ours4, 4); }
+    void EvaluateFromFar() { EvaluateCompiled(fromFar, source3, ours3, 3); }
+    void EvaluateRaw() {
+        Osd::BufferDescriptor const desc(0, 3, 3);
+        SimdEvaluator::EvalStencils(source3.data(), desc, ours3.data(), desc,
+                                    far->GetSizes().data(), far->GetOffsets().data(),
+                                    far->GetControlIndices().data(), far->GetWeights().data(), 0,
+                                    far->GetNumStencils());
+    }
+
+private:
+    static std::unique_ptr<Far::TopologyRefiner> Refine(engine::Scene const& scene, int level) {
+        auto made = far_ext::CreateRefiner(scene.cage);
+        made->RefineUniform(Far::TopologyRefiner::UniformOptions(level));
+        return made;
+    }
+};
+
+void CheckResults(Subject& subject) {
+    subject.EvaluateOsd3();
+    subject.EvaluateOsd4();
+    subject.Evaluate3();
+    subject.Evaluate4();
+    CheckEqual(subject.ours3, subject.theirs3, "length 3");
+    CheckEqual(subject.ours4, subject.theirs4, "length 4");
+    WithSse2([&] { subject.Evaluate3(); });
+    CheckEqual(subject.ours3, subject.theirs3, "length 3 with SSE2");
+    subject.EvaluateFromFar();
+    CheckEqual(subject.ours3, subject.theirs3, "the compiled table of Far");
+}
+
+/// Numbers of the variants that evaluate.
+struct Evaluations {
+    size_t osd3, osd4, plain, limn3, limn4, sse3, sse4, compiled, raw;
+};
+
+Evaluations AddEvaluations(Subject& subject, Rounds& rounds) {
     // Every evaluation several times in a row, as an animation does it.
     auto const add = [&](char const* what, auto const& evaluate) {
         return rounds.Add(
@@ -105,41 +137,45 @@ void MeasureMesh(char const* name, engine::Scene const& scene, int level, Target
             [evaluate] {
                 for (int i = 0; i < kTimes; ++i) evaluate();
             },
-            numRows * kTimes);
+            subject.GetNumRows() * kTimes);
     };
-    size_t const osd3 = add("OpenSubdiv, length 3",
-                            [&] { EvaluateWithOsd(*far, source3.data(), theirs3.data(), 3); });
-    size_t const osd4 = add("OpenSubdiv, length 4",
-                            [&] { EvaluateWithOsd(*far, source4.data(), theirs4.data(), 4); });
-    size_t const plain = add("plain rows, -O3, length 3",
-                             [&] { EvaluatePlainRows(*far, source3.data(), theirs3.data()); });
-    size_t const limn3 = add("limn, length 3", [&] { EvaluateCompiled(ours, source3, ours3, 3); });
-    size_t const limn4 = add("limn, length 4", [&] { EvaluateCompiled(ours, source4, ours4, 4); });
-    size_t const sse3 = add("limn, length 3, SSE2 only",
-                            [&] { WithSse2([&] { EvaluateCompiled(ours, source3, ours3, 3); }); });
-    size_t const sse4 = add("limn, length 4, SSE2 only",
-                            [&] { WithSse2([&] { EvaluateCompiled(ours, source4, ours4, 4); }); });
-    size_t const compiled = add("limn, Far's table compiled, length 3",
-                                [&] { EvaluateCompiled(fromFar, source3, ours3, 3); });
-    size_t const raw = add("limn, Far's table as it stands, length 3", [&] {
-        Osd::BufferDescriptor const desc(0, 3, 3);
-        SimdEvaluator::EvalStencils(source3.data(), desc, ours3.data(), desc,
-                                    far->GetSizes().data(), far->GetOffsets().data(),
-                                    far->GetControlIndices().data(), far->GetWeights().data(), 0,
-                                    far->GetNumStencils());
-    });
-    size_t const theirBuild =
-        rounds.Add("build: Far::StencilTableFactory", [&] { MakeFarTable(*refiner); }, numRows);
-    size_t const ourBuild = rounds.Add(
-        "build: limn, from the topology",
-        [&] { CompiledStencils const table(far_ext::BuildRefinedStencils(*refiner)); }, numRows);
-    size_t const compile = rounds.Add(
-        "build: limn, from Far's table", [&] { CompiledStencils::Compile(*far); }, numRows);
-    rounds.Run("vertices");
+    return {
+        .osd3 = add("OpenSubdiv, length 3", [&] { subject.EvaluateOsd3(); }),
+        .osd4 = add("OpenSubdiv, length 4", [&] { subject.EvaluateOsd4(); }),
+        .plain = add("plain rows, -O3, length 3", [&] { subject.EvaluatePlain(); }),
+        .limn3 = add("limn, length 3", [&] { subject.Evaluate3(); }),
+        .limn4 = add("limn, length 4", [&] { subject.Evaluate4(); }),
+        .sse3 = add("limn, length 3, SSE2 only", [&] { WithSse2([&] { subject.Evaluate3(); }); }),
+        .sse4 = add("limn, length 4, SSE2 only", [&] { WithSse2([&] { subject.Evaluate4(); }); }),
+        .compiled = add("limn, Far's table compiled, length 3", [&] { subject.EvaluateFromFar(); }),
+        .raw = add("limn, Far's table as it stands, length 3", [&] { subject.EvaluateRaw(); })};
+}
 
+/// Numbers of the variants that build tables.
+struct Builds {
+    size_t theirs, ours, compile;
+};
+
+Builds AddBuilds(Subject const& subject, Rounds& rounds) {
+    double const numRows = subject.GetNumRows();
+    return {
+        .theirs = rounds.Add(
+            "build: Far::StencilTableFactory", [&] { MakeFarTable(*subject.refiner); }, numRows),
+        .ours = rounds.Add(
+            "build: limn, from the topology",
+            [&] { CompiledStencils const table(far_ext::BuildRefinedStencils(*subject.refiner)); },
+            numRows),
+        .compile = rounds.Add(
+            "build: limn, from Far's table", [&] { CompiledStencils::Compile(*subject.far); },
+            numRows)};
+}
+
+void ReportRatios(Rounds const& rounds, Evaluations const& evaluations, Builds const& builds,
+                  Targets const& targets) {
     auto const third = [](std::optional<double> target) {
         return target ? std::optional(std::ceil(*target / 3.0 * 100.0) / 100.0) : target;
     };
+    auto const& [osd3, osd4, plain, limn3, limn4, sse3, sse4, compiled, raw] = evaluations;
     rounds.Compare("limn over OpenSubdiv, length 3", limn3, osd3, targets.overLength3);
     rounds.Compare("limn over OpenSubdiv, length 4", limn4, osd4, targets.overLength4);
     rounds.Compare("the same with SSE2 only, length 3", sse3, osd3, third(targets.overLength3));
@@ -147,14 +183,35 @@ void MeasureMesh(char const* name, engine::Scene const& scene, int level, Target
     rounds.Compare("limn over plain rows", limn3, plain);
     rounds.Compare("Far's table compiled, over OpenSubdiv, length 3", compiled, osd3);
     rounds.Compare("Far's table as it stands, over OpenSubdiv, length 3", raw, osd3);
-    rounds.Compare("build from the topology over Far's factory", ourBuild, theirBuild,
+    rounds.Compare("build from the topology over Far's factory", builds.ours, builds.theirs,
                    targets.build);
-    rounds.Compare("compiling Far's table over making it", compile, theirBuild);
-    PrintFigure("limn's table", static_cast<double>(ours.GetMemory()) / numRows, "bytes per vertex",
-                targets.memory);
-    PrintFigure("Far's table compiled", static_cast<double>(fromFar.GetMemory()) / numRows,
-                "bytes per vertex");
-    PrintFigure("Far's table", GetMemory(*far) / numRows, "bytes per vertex");
+    rounds.Compare("compiling Far's table over making it", builds.compile, builds.theirs);
+}
+
+void ReportMemory(Subject const& subject, std::optional<double> target) {
+    auto const print = [&](char const* what, double bytes, std::optional<double> atMost) {
+        PrintFigure(what, bytes / subject.GetNumRows(), "bytes per vertex", atMost);
+    };
+    print("limn's table", static_cast<double>(subject.ours.GetMemory()), target);
+    print("Far's table compiled", static_cast<double>(subject.fromFar.GetMemory()), {});
+    print("Far's table", GetMemory(*subject.far), {});
+}
+
+void MeasureMesh(char const* name, engine::Scene const& scene, int level, Targets const& targets,
+                 int numRounds) {
+    Subject subject(scene, level);
+    fmt::print(
+        "\n{}, level {}: {} control and {} refined vertices, {:.1f} weights each; {} on this CPU\n",
+        name, level, subject.far->GetNumControlVertices(), subject.far->GetNumStencils(),
+        static_cast<double>(subject.far->GetWeights().size()) / subject.GetNumRows(),
+        eval::GetName(eval::GetInstructionSet()));
+    CheckResults(subject);
+    Rounds rounds(numRounds);
+    Evaluations const evaluations = AddEvaluations(subject, rounds);
+    Builds const builds = AddBuilds(subject, rounds);
+    rounds.Run("vertices");
+    ReportRatios(rounds, evaluations, builds, targets);
+    ReportMemory(subject, targets.memory);
 }
 
 /// Rows of one float, as 1-forms have them: one per edge, 8.5 weights on average, over edges near

@@ -170,15 +170,50 @@ struct PeerErrors {
     }
 };
 
-/// Compares everything with limn's own evaluation in double. Fails if limn's floats are off.
-void CheckResults(Subject& subject, double tolerance) {
-    subject.EvaluateLimn();
-    subject.patches.Evaluate(subject.coords, subject.osd.data());
-    subject.EvaluateBfr();
+/// Errors of limn's floats.
+struct LimnErrors {
+    Error position, normal, mean, gaussian, k1, k2;
+
+    void Add(Subject const& subject, size_t i, eval::SurfaceSample const& truth) {
+        auto const get = [&](int c) {
+            return static_cast<double>(
+                subject.limn[static_cast<size_t>(c) * subject.planeSize + i]);
+        };
+        for (int c = 0; c < 3; ++c) {
+            position.Add(get(eval::kPositionX + c), truth.position[c]);
+            normal.Add(get(eval::kNormalX + c), truth.normal[c]);
+        }
+        mean.Add(get(eval::kMean), truth.curvature.mean);
+        gaussian.Add(get(eval::kGaussian), truth.curvature.gaussian);
+        k1.Add(get(eval::kK1), truth.curvature.k1);
+        k2.Add(get(eval::kK2), truth.curvature.k2);
+    }
+};
+
+/// Value and derivatives of the three coordinates; the second derivatives, which are compared, to
+/// the face's own parameters.
+std::array<std::array<double, 6>, 3> FindDerivatives(FaceTree const& tree, bool isLoop,
+                                                     eval::PatchPoint const& point) {
+    std::array<std::array<double, 6>, 3> derivatives;
+    for (int c = 0; c < 3; ++c) {
+        double const* const coefficients = point.coefficients + c * tree.GetNumCoefficients();
+        derivatives[c] = isLoop ? eval::EvaluateTrianglePolynomial(coefficients, point.x, point.y)
+                                : eval::EvaluateQuadPolynomial(coefficients, point.x, point.y);
+        for (int k = 3; k < 6; ++k) derivatives[c][k] *= point.scale * point.scale;
+    }
+    return derivatives;
+}
+
+struct Errors {
+    LimnErrors limn;
+    PeerErrors osd, bfr;
+};
+
+/// Compares every kCheckStep'th sample with limn's own evaluation in double.
+Errors FindErrors(Subject const& subject) {
     FaceTree tree(subject.surface, subject.scene.positions, 3);
     Samples const& samples = subject.samples;
-    Error position, normal, mean, gaussian, k1, k2;
-    PeerErrors osd, bfr;
+    Errors errors;
     for (Index face = 0; face < subject.scene.cage.GetNumFaces(); ++face) {
         tree.Bind(face);
         size_t const step = kCheckStep;
@@ -186,51 +221,46 @@ void CheckResults(Subject& subject, double tolerance) {
              i += step) {
             double const s = samples.s[i], t = samples.t[i];
             eval::SurfaceSample const truth = eval::EvaluateSample(tree, 0, s, t, 1.0);
-            auto const get = [&](int c) {
-                return static_cast<double>(
-                    subject.limn[static_cast<size_t>(c) * subject.planeSize + i]);
-            };
-            for (int c = 0; c < 3; ++c) {
-                position.Add(get(eval::kPositionX + c), truth.position[c]);
-                normal.Add(get(eval::kNormalX + c), truth.normal[c]);
-            }
-            mean.Add(get(eval::kMean), truth.curvature.mean);
-            gaussian.Add(get(eval::kGaussian), truth.curvature.gaussian);
-            k1.Add(get(eval::kK1), truth.curvature.k1);
-            k2.Add(get(eval::kK2), truth.curvature.k2);
-
+            errors.limn.Add(subject, i, truth);
             eval::PatchPoint const point = tree.Locate(0, s, t, FaceTree::kCurvatureDepth);
             if (point.isMoved) continue;
-            std::array<std::array<double, 6>, 3> derivatives;
-            for (int c = 0; c < 3; ++c) {
-                double const* const coefficients =
-                    point.coefficients + c * tree.GetNumCoefficients();
-                derivatives[c] =
-                    subject.surface.IsLoop()
-                        ? eval::EvaluateTrianglePolynomial(coefficients, point.x, point.y)
-                        : eval::EvaluateQuadPolynomial(coefficients, point.x, point.y);
-                for (int k = 3; k < 6; ++k) derivatives[c][k] *= point.scale * point.scale;
-            }
-            osd.Add(&subject.osd[i * OsdPatches::kLength], derivatives, truth.curvature.mean);
-            bfr.Add(&subject.bfr[i * BfrSurfaces::kLength], derivatives, truth.curvature.mean);
+            auto const derivatives = FindDerivatives(tree, subject.surface.IsLoop(), point);
+            double const mean = truth.curvature.mean;
+            errors.osd.Add(&subject.osd[i * OsdPatches::kLength], derivatives, mean);
+            errors.bfr.Add(&subject.bfr[i * BfrSurfaces::kLength], derivatives, mean);
         }
     }
+    return errors;
+}
+
+void PrintErrors(Errors const& errors) {
+    auto const& [position, normal, mean, gaussian, k1, k2] = errors.limn;
     fmt::print("  largest error / largest value, against double:\n");
     fmt::print(
         "    limn         position {:.1e}  normal {:.1e}  mean {:.1e}  gaussian {:.1e}  k1 {:.1e}  "
         "k2 {:.1e}\n",
         position.Get(), normal.Get(), mean.Get(), gaussian.Get(), k1.Get(), k2.Get());
-    fmt::print("    EvalPatches  mean {:.1e}  second derivatives {:.1e}\n", osd.mean.Get(),
-               osd.second.Get());
-    fmt::print("    Bfr          mean {:.1e}  second derivatives {:.1e}\n", bfr.mean.Get(),
-               bfr.second.Get());
-    Check(position.Get() <= 1e-6 && normal.Get() <= 1e-5,
+    fmt::print("    EvalPatches  mean {:.1e}  second derivatives {:.1e}\n", errors.osd.mean.Get(),
+               errors.osd.second.Get());
+    fmt::print("    Bfr          mean {:.1e}  second derivatives {:.1e}\n", errors.bfr.mean.Get(),
+               errors.bfr.second.Get());
+}
+
+/// Evaluates everything once. Fails if limn's floats are off.
+void CheckResults(Subject& subject, double tolerance) {
+    subject.EvaluateLimn();
+    subject.patches.Evaluate(subject.coords, subject.osd.data());
+    subject.EvaluateBfr();
+    Errors const errors = FindErrors(subject);
+    PrintErrors(errors);
+    Check(errors.limn.position.Get() <= 1e-6 && errors.limn.normal.Get() <= 1e-5,
           "positions or normals differ from double");
     constexpr double kTarget = 1e-6;
-    fmt::print("  => mean curvature in float: error {:.1e}, target at most {:.0e}: {}\n",
-               mean.Get(), kTarget, mean.Get() <= kTarget ? "reached" : "MISSED");
-    Check(mean.Get() <= tolerance,
-          fmt::format("mean curvature is off by {:.1e}, more than {:.0e}", mean.Get(), tolerance));
+    double const mean = errors.limn.mean.Get();
+    fmt::print("  => mean curvature in float: error {:.1e}, target at most {:.0e}: {}\n", mean,
+               kTarget, mean <= kTarget ? "reached" : "MISSED");
+    Check(mean <= tolerance,
+          fmt::format("mean curvature is off by {:.1e}, more than {:.0e}", mean, tolerance));
 }
 
 double ShareOfExtraordinaryFaces(eval::LimitSurface const& surface) {

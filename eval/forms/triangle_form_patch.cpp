@@ -2,6 +2,8 @@
 #include "eval/forms/triangle_form_patch.h"
 
 #include <algorithm>
+#include <memory>
+#include <vector>
 
 #include <Eigen/Dense>
 
@@ -57,26 +59,26 @@ bool GatherEdges(Far::TopologyLevel const& level, Index face,
     return true;
 }
 
-/// Polynomials of both components per edge of the neighbourhood.
-struct Basis {
-    struct Entry {
-        size_t place;
-        std::array<Terms, 2> components;
-    };
-    std::vector<Entry> entries;
+/// A regular lattice of triangles, so wide that nothing near its middle knows of its border.
+struct Lattice {
+    static constexpr Index kSide = 9;
+    /// At the middle: corners (4,4), (5,4), (5,5).
+    static constexpr Index kFace = 2 * ((kSide / 2) * (kSide - 1) + kSide / 2);
+
+    far_ext::ControlMesh mesh;
+    std::vector<double> positions;
 };
 
-Basis MakeBasis() {
-    // A lattice wide enough that nothing near its middle knows of its border.
-    constexpr Index kSide = 9;
-    far_ext::ControlMesh mesh;
+Lattice MakeLattice() {
+    constexpr Index kSide = Lattice::kSide;
+    Lattice lattice;
+    far_ext::ControlMesh& mesh = lattice.mesh;
     mesh.scheme = Sdc::SCHEME_LOOP;
     mesh.numVertices = kSide * kSide;
-    std::vector<double> positions;
     for (Index j = 0; j < kSide; ++j) {
         for (Index i = 0; i < kSide; ++i)
-            positions.insert(positions.end(),
-                             {static_cast<double>(i), static_cast<double>(j), 0.0});
+            lattice.positions.insert(lattice.positions.end(),
+                                     {static_cast<double>(i), static_cast<double>(j), 0.0});
     }
     for (Index j = 0; j + 1 < kSide; ++j) {
         for (Index i = 0; i + 1 < kSide; ++i) {
@@ -86,56 +88,104 @@ Basis MakeBasis() {
                                      {a, a + 1, a + kSide + 1, a, a + kSide + 1, a + kSide});
         }
     }
-    auto const refiner = far_ext::CreateRefiner(mesh);
-    Far::TopologyRefiner::UniformOptions options(2);
+    return lattice;
+}
+
+constexpr int kLevel = 2;  // its vertices on the triangle are as many as the terms
+
+std::unique_ptr<Far::TopologyRefiner> RefineLattice(Lattice const& lattice) {
+    auto refiner = far_ext::CreateRefiner(lattice.mesh);
+    Far::TopologyRefiner::UniformOptions options(kLevel);
     options.fullTopologyInLastLevel = true;
     refiner->RefineUniform(options);
-    auto const base = refiner->GetLevel(0), fine = refiner->GetLevel(2);
-    auto const stencils = far_ext::ComposeFormStencils(*refiner, 2).s1;
-    std::vector<double> const points =
-        RefineValues<3>(*refiner, 2, RefineValues<3>(*refiner, 1, positions));
-    far_ext::Points const lattice(points);
+    return refiner;
+}
 
-    Index const face = 2 * ((kSide / 2) * (kSide - 1) + kSide / 2);  // corners (4,4), (5,4), (5,5)
-    std::vector<std::pair<Index, Terms>> nodes;
-    Eigen::Matrix<double, kNumTerms, kNumTerms> system;
-    for (Index vertex = 0; vertex < fine.GetNumVertices(); ++vertex) {
-        double const x = lattice[vertex].x() - kSide / 2, y = lattice[vertex].y() - kSide / 2;
-        double const s = x - y, t = y;  // (1,0) is s, (1,1) is t
-        if (s < -0.01 || t < -0.01 || s + t > 1.01) continue;
-        Terms const terms = MakeTerms(s, t);
-        system.row(static_cast<Eigen::Index>(nodes.size())) =
-            Eigen::Map<Eigen::RowVectorXd const>(terms.data(), kNumTerms);
-        nodes.emplace_back(vertex, terms);
-    }
-    Eigen::FullPivLU<Eigen::Matrix<double, kNumTerms, kNumTerms>> const solver(system);
+/// The refined vertices on the triangle, and the polynomials through values there.
+class Interpolation {
+public:
+    using Values = Eigen::Matrix<double, kNumTerms, 2>;
 
-    std::array<far_ext::OrientedEdge, kNumPlaces> places;
-    GatherEdges(base, face, places);
-    VertexCovectors const covectors(*refiner, 2);
-    Basis basis;
-    std::vector<Index> seen;
-    for (size_t place = 0; place < kNumPlaces; ++place) {
-        if (std::find(seen.begin(), seen.end(), places[place].edge) != seen.end()) continue;
-        seen.push_back(places[place].edge);
-        std::vector<double> form(base.GetNumEdges(), 0.0), refined(fine.GetNumEdges());
-        form[places[place].edge] = places[place].sign;
-        stencils.Apply(form.data(), refined.data(), 1);
-        Eigen::Matrix<double, kNumTerms, 2> values;
-        for (size_t k = 0; k < kNumTerms; ++k) {
-            Eigen::Vector3d const v =
-                covectors.Find(nodes[k].first, refined, points)
-                    .GetVector();  // the lattice's own metric: w(d/dx), w(d/dy)
-            values.row(static_cast<Eigen::Index>(k)) << v.x(), v.x() + v.y();
+    explicit Interpolation(far_ext::Points points) {
+        System system;
+        for (Index vertex = 0; vertex < static_cast<Index>(points.size()); ++vertex) {
+            double const x = points[vertex].x() - Lattice::kSide / 2,
+                         y = points[vertex].y() - Lattice::kSide / 2;
+            double const s = x - y, t = y;  // (1,0) is s, (1,1) is t
+            if (s < -0.01 || t < -0.01 || s + t > 1.01) continue;
+            Terms const terms = MakeTerms(s, t);
+            system.row(static_cast<Eigen::Index>(_nodes.size())) =
+                Eigen::Map<Eigen::RowVectorXd const>(terms.data(), kNumTerms);
+            _nodes.push_back(vertex);
         }
-        Eigen::Matrix<double, kNumTerms, 2> const found = solver.solve(values);
-        Basis::Entry entry{place, {}};
+        _solver.compute(system);
+    }
+
+    std::vector<Index> const& GetNodes() const { return _nodes; }
+
+    std::array<Terms, 2> Solve(Values const& values) const {
+        Values const found = _solver.solve(values);
+        std::array<Terms, 2> components;
         for (size_t c = 0; c < 2; ++c) {
             for (size_t k = 0; k < kNumTerms; ++k)
-                entry.components[c][k] =
+                components[c][k] =
                     found(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(c));
         }
-        basis.entries.push_back(entry);
+        return components;
+    }
+
+private:
+    using System = Eigen::Matrix<double, kNumTerms, kNumTerms>;
+
+    std::vector<Index> _nodes;
+    Eigen::FullPivLU<System> _solver;
+};
+
+/// Polynomials of both components per edge of the neighbourhood.
+struct Basis {
+    struct Entry {
+        size_t place;
+        std::array<Terms, 2> components;
+    };
+    std::vector<Entry> entries;
+};
+
+/// The first place of each edge: some have two.
+std::vector<size_t> FindFirstPlaces(std::array<far_ext::OrientedEdge, kNumPlaces> const& places) {
+    std::vector<size_t> firsts;
+    for (size_t place = 0; place < kNumPlaces; ++place) {
+        auto const isSame = [&](size_t first) { return places[first].edge == places[place].edge; };
+        if (std::none_of(firsts.begin(), firsts.end(), isSame)) firsts.push_back(place);
+    }
+    return firsts;
+}
+
+Basis MakeBasis() {
+    Lattice const lattice = MakeLattice();
+    auto const refiner = RefineLattice(lattice);
+    auto const base = refiner->GetLevel(0);
+    auto const stencils = far_ext::ComposeFormStencils(*refiner, kLevel).s1;
+    std::vector<double> points = lattice.positions;
+    for (int level = 1; level <= kLevel; ++level) points = RefineValues<3>(*refiner, level, points);
+    Interpolation const interpolation(points);
+    VertexCovectors const covectors(*refiner, kLevel);
+
+    std::array<far_ext::OrientedEdge, kNumPlaces> places;
+    GatherEdges(base, Lattice::kFace, places);
+    Basis basis;
+    for (size_t place : FindFirstPlaces(places)) {
+        std::vector<double> form(base.GetNumEdges(), 0.0),
+            refined(refiner->GetLevel(kLevel).GetNumEdges());
+        form[places[place].edge] = places[place].sign;
+        stencils.Apply(form.data(), refined.data(), 1);
+        Interpolation::Values values;
+        for (size_t k = 0; k < kNumTerms; ++k) {
+            // The lattice's own metric: w(d/dx), w(d/dy).
+            Eigen::Vector3d const v =
+                covectors.Find(interpolation.GetNodes()[k], refined, points).GetVector();
+            values.row(static_cast<Eigen::Index>(k)) << v.x(), v.x() + v.y();
+        }
+        basis.entries.push_back({place, interpolation.Solve(values)});
     }
     return basis;
 }

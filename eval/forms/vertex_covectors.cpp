@@ -153,66 +153,100 @@ Eigen::Vector3d VertexCovector::GetVector() const {
 
 /// [Forms 7.2]: w(T) = sum t(w_i) w(sp_i) + (quads: paths to far corners) + sum h_j (d1 w)(f_j), h
 /// = r (lambda - s)^-1.
-VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel const& wheel) {
-    bool const isLoop = scheme == Sdc::SCHEME_LOOP;
-    int const numSides = isLoop ? 3 : 4;
-    far_ext::WheelRows const local = far_ext::MakeWheelRows(scheme, wheel);
-    Eigen::Index const k = wheel.GetNumFaces();
-    size_t const numSpokes = wheel.GetNumSpokes();
-    auto const chain = [&](std::vector<double> const& x) {
-        return Eigen::Map<Eigen::VectorXd const>(x.data(), k);
-    };
-    Eigen::MatrixXd shares(k, k);
-    for (Eigen::Index j = 0; j < k; ++j) shares.row(j) = chain(local.share[j]).transpose();
+class VertexCovectors::RowMaker {
+public:
+    RowMaker(Sdc::SchemeType scheme, Wheel const& wheel)
+        : _wheel(wheel),
+          _isLoop(scheme == Sdc::SCHEME_LOOP),
+          _numSides(_isLoop ? 3 : 4),
+          _k(wheel.GetNumFaces()),
+          _numSpokes(wheel.GetNumSpokes()),
+          _local(far_ext::MakeWheelRows(scheme, wheel)) {}
 
-    auto const masks = MakeMasks(isLoop, wheel);
-    Rows rows;
-    for (size_t a = 0; a < 2; ++a) {
-        TangentMask const& mask = masks[a];
-        Row& row = rows[a];
-        row.vertex = mask.vertex;
-        row.ends = mask.ends;
-        row.corners = mask.corners;
-        row.edges.assign(numSpokes + k * (numSides - 2), 0.0);
-        auto const addSide = [&](Eigen::Index face, int m, double weight) {
-            if (m == 0)
-                row.edges[face] += weight;
-            else if (m == numSides - 1)
-                row.edges[(face + 1) % numSpokes] -= weight;
-            else
-                row.edges[numSpokes + face * (numSides - 2) + m - 1] += weight;
-        };
-        // The mask as a chain tau with boundary t, and r: what one step of S1 makes of it beside
-        // lambda tau, as a 2-chain.
-        Eigen::VectorXd residue = Eigen::VectorXd::Zero(k);
-        for (size_t i = 0; i < numSpokes; ++i) {
-            double const t = mask.ends[i];
-            if (t == 0.0) continue;
-            row.edges[i] += t;
-            residue += t * chain(local.flow[i]);
-            if (isLoop || wheel.faceShares[i] == 0.0) continue;
-            double const q = t * wheel.faceShares[i] / 8.0;
-            residue[static_cast<Eigen::Index>(i)] += q;
-            residue[(static_cast<Eigen::Index>(i) + k - 1) % k] -= q;
-        }
-        for (Eigen::Index j = 0; !isLoop && j < k; ++j) {
-            double const t = mask.corners[j];
-            if (t == 0.0) continue;
-            for (int m = 0; m < 4; ++m)
-                addSide(j, m, m < 2 ? 0.5 * t : -0.5 * t);  // the mean of both ways round
-            residue += 0.5 * t * (chain(local.flow[j]) + chain(local.flow[(j + 1) % numSpokes]));
-        }
-        // Faces are added until the chain is an eigenvector: h s + r = lambda h, since d1 S1 = S2
-        // d1.
-        if (residue.isZero(0.0)) continue;
-        Eigen::MatrixXd const system =
-            (mask.eigenvalue * Eigen::MatrixXd::Identity(k, k) - shares).transpose();
-        Eigen::VectorXd const h = system.partialPivLu().solve(residue);
-        for (Eigen::Index j = 0; j < k; ++j) {
-            for (int m = 0; m < numSides; ++m) addSide(j, m, h[j]);
-        }
+    Row Make(TangentMask const& mask) const;
+
+private:
+    Eigen::Map<Eigen::VectorXd const> AsChain(std::vector<double> const& x) const {
+        return {x.data(), _k};
     }
-    return rows;
+    void AddSide(Eigen::Index face, int m, double weight, Row& row) const;
+    void AddSpokes(TangentMask const& mask, Row& row, Eigen::VectorXd& residue) const;
+    void AddCorners(TangentMask const& mask, Row& row, Eigen::VectorXd& residue) const;
+    Eigen::VectorXd FindFaces(double eigenvalue, Eigen::VectorXd const& residue) const;
+
+    Wheel const& _wheel;
+    bool _isLoop;
+    int _numSides;
+    Eigen::Index _k;
+    size_t _numSpokes;
+    far_ext::WheelRows _local;
+};
+
+/// Adds side m of a face, counter-clockwise from its first spoke on.
+void VertexCovectors::RowMaker::AddSide(Eigen::Index face, int m, double weight, Row& row) const {
+    if (m == 0)
+        row.edges[face] += weight;
+    else if (m == _numSides - 1)
+        row.edges[(face + 1) % _numSpokes] -= weight;
+    else
+        row.edges[_numSpokes + face * (_numSides - 2) + m - 1] += weight;
+}
+
+void VertexCovectors::RowMaker::AddSpokes(TangentMask const& mask, Row& row,
+                                          Eigen::VectorXd& residue) const {
+    for (size_t i = 0; i < _numSpokes; ++i) {
+        double const t = mask.ends[i];
+        if (t == 0.0) continue;
+        row.edges[i] += t;
+        residue += t * AsChain(_local.flow[i]);
+        if (_isLoop || _wheel.faceShares[i] == 0.0) continue;
+        double const q = t * _wheel.faceShares[i] / 8.0;
+        residue[static_cast<Eigen::Index>(i)] += q;
+        residue[(static_cast<Eigen::Index>(i) + _k - 1) % _k] -= q;
+    }
+}
+
+/// Paths to the far corners of quads: the mean of both ways round.
+void VertexCovectors::RowMaker::AddCorners(TangentMask const& mask, Row& row,
+                                           Eigen::VectorXd& residue) const {
+    for (Eigen::Index j = 0; j < _k; ++j) {
+        double const t = mask.corners[j];
+        if (t == 0.0) continue;
+        for (int m = 0; m < 4; ++m) AddSide(j, m, m < 2 ? 0.5 * t : -0.5 * t, row);
+        residue += 0.5 * t * (AsChain(_local.flow[j]) + AsChain(_local.flow[(j + 1) % _numSpokes]));
+    }
+}
+
+/// The faces that make the chain an eigenvector: h s + r = lambda h, since d1 S1 = S2 d1.
+Eigen::VectorXd VertexCovectors::RowMaker::FindFaces(double eigenvalue,
+                                                     Eigen::VectorXd const& residue) const {
+    Eigen::MatrixXd shares(_k, _k);
+    for (Eigen::Index j = 0; j < _k; ++j) shares.row(j) = AsChain(_local.share[j]).transpose();
+    Eigen::MatrixXd const system =
+        (eigenvalue * Eigen::MatrixXd::Identity(_k, _k) - shares).transpose();
+    return system.partialPivLu().solve(residue);
+}
+
+VertexCovectors::Row VertexCovectors::RowMaker::Make(TangentMask const& mask) const {
+    Row row{mask.vertex, mask.ends, mask.corners,
+            std::vector<double>(_numSpokes + _k * (_numSides - 2), 0.0)};
+    // The mask as a chain tau with boundary t, and r: what one step of S1 makes of it beside lambda
+    // tau, as a 2-chain.
+    Eigen::VectorXd residue = Eigen::VectorXd::Zero(_k);
+    AddSpokes(mask, row, residue);
+    if (!_isLoop) AddCorners(mask, row, residue);
+    if (residue.isZero(0.0)) return row;
+    Eigen::VectorXd const h = FindFaces(mask.eigenvalue, residue);
+    for (Eigen::Index j = 0; j < _k; ++j) {
+        for (int m = 0; m < _numSides; ++m) AddSide(j, m, h[j], row);
+    }
+    return row;
+}
+
+VertexCovectors::Rows VertexCovectors::MakeRows(Sdc::SchemeType scheme, Wheel const& wheel) {
+    RowMaker const maker(scheme, wheel);
+    auto const masks = MakeMasks(scheme == Sdc::SCHEME_LOOP, wheel);
+    return {maker.Make(masks[0]), maker.Make(masks[1])};
 }
 
 VertexCovectors::VertexCovectors(Far::TopologyRefiner const& refiner, int level)

@@ -57,6 +57,7 @@ private:
         std::vector<double> edges;          ///< of w(T): the wheel's edges, spokes outwards first
     };
     using Rows = std::array<Row, 2>;
+    class RowMaker;
 
     static Rows MakeRows(Sdc::SchemeType scheme, far_ext::Wheel const& wheel);
 

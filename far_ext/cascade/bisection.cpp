@@ -54,10 +54,23 @@ struct CutCorner {
     Index vertex, value;
 };
 
+}  // namespace
+
+/// The edges of a mesh, and which of them a pass cuts.
+struct Bisection::CutEdges {
+    EdgeNumbers numbers;
+    std::vector<std::array<Index, 2>> ends;
+    std::vector<Index> middles;  // per edge: its new vertex, or -1
+
+    Index FindMiddle(Index a, Index b) const {
+        Index const edge = numbers.Find(a, b);
+        return edge < 0 ? -1 : middles[edge];
+    }
+};
+
 /// What a pass makes.
-struct Halves {
-    std::vector<Index> const& middles;  // per edge: its new vertex, or -1
-    EdgeNumbers const& edges;
+struct Bisection::Halves {
+    CutEdges const& edges;
     std::vector<Index>& faces;
     std::vector<Index>& baseFaces;
     std::vector<Index>* fvarValues;  // null without a channel
@@ -68,8 +81,7 @@ struct Halves {
     /// Cuts a triangle whose refinement edge is (face[0], face[1]), and its halves. New triangles
     /// have their refinement edge, opposite the newest vertex, first as well.
     void Cut(std::array<CutCorner, 3> const& face, Index baseFace) {
-        Index const edge = edges.Find(face[0].vertex, face[1].vertex),
-                    middle = edge < 0 ? -1 : middles[edge];
+        Index const middle = edges.FindMiddle(face[0].vertex, face[1].vertex);
         if (middle < 0) {
             for (CutCorner const& corner : face) {
                 faces.push_back(corner.vertex);
@@ -91,8 +103,6 @@ private:
     }
 };
 
-}  // namespace
-
 Bisection::Bisection(Index numVertices, std::vector<Index> faces, std::span<double const> positions,
                      std::vector<std::array<Index, 2>> creases, std::vector<Index> corners) {
     _mesh.numVertices = numVertices;
@@ -110,57 +120,64 @@ void Bisection::SetFVarChannel(Index numValues, std::vector<Index> values) {
     _fvarValues = std::move(values);
 }
 
-CascadeMesh const& Bisection::Refine() {
-    CascadeMesh const coarse = std::move(_mesh);
-    std::vector<Index> const coarseBaseFaces = std::move(_baseFaces);
-    EdgeNumbers edges;
-    std::vector<std::array<Index, 2>> ends;
-    for (size_t at = 0; at < coarse.faces.size(); at += 3) {
+/// Numbers the edges of the mesh; the refinement edges are to be cut.
+Bisection::CutEdges Bisection::FindCutEdges() const {
+    std::vector<Index> const& faces = _mesh.faces;
+    CutEdges edges;
+    for (size_t at = 0; at < faces.size(); at += 3) {
         for (size_t k = 0; k < 3; ++k) {
-            Index const a = coarse.faces[at + k], b = coarse.faces[at + (k + 1) % 3];
-            if (static_cast<size_t>(edges.Get(a, b)) == ends.size()) ends.push_back({a, b});
+            Index const a = faces[at + k], b = faces[at + (k + 1) % 3];
+            if (static_cast<size_t>(edges.numbers.Get(a, b)) == edges.ends.size())
+                edges.ends.push_back({a, b});
         }
     }
-    std::vector<Index> middles(edges.GetCount(), -1);
+    std::vector<char> isCut(edges.ends.size(), 0);
     for (size_t face = 0; face < _refinementEdges.size(); ++face) {
         size_t const k = _refinementEdges[face];
-        middles[edges.Get(coarse.faces[3 * face + k], coarse.faces[3 * face + (k + 1) % 3])] = 0;
+        isCut[edges.numbers.Find(faces[3 * face + k], faces[3 * face + (k + 1) % 3])] = 1;
     }
-    _mesh = {};
-    _mesh.numVertices = coarse.numVertices;
-    for (Index i = 0; i < coarse.numVertices; ++i) {
+    Index numVertices = _mesh.numVertices;
+    for (char cut : isCut) edges.middles.push_back(cut ? numVertices++ : -1);
+    return edges;
+}
+
+void Bisection::AddVertices(Index numCoarse, CutEdges const& edges) {
+    _mesh.numVertices = numCoarse;
+    for (Index i = 0; i < numCoarse; ++i) {
         _mesh.parents.push_back(i);
         _mesh.parentOffsets.push_back(static_cast<int>(_mesh.parents.size()));
     }
-    for (size_t edge = 0; edge < middles.size(); ++edge) {
-        if (middles[edge] < 0) continue;
-        middles[edge] = _mesh.numVertices++;
-        _mesh.parents.insert(_mesh.parents.end(), ends[edge].begin(), ends[edge].end());
+    for (size_t edge = 0; edge < edges.ends.size(); ++edge) {
+        if (edges.middles[edge] < 0) continue;
+        ++_mesh.numVertices;
+        auto const& ends = edges.ends[edge];
+        _mesh.parents.insert(_mesh.parents.end(), ends.begin(), ends.end());
         _mesh.parentOffsets.push_back(static_cast<int>(_mesh.parents.size()));
     }
-    _baseFaces.clear();
+}
+
+void Bisection::CutFaces(std::vector<Index> const& coarse, CutEdges const& edges) {
+    std::vector<Index> const coarseBaseFaces = std::exchange(_baseFaces, {}),
+                             coarseValues = std::exchange(_fvarValues, {});
     _numFVarValues += static_cast<Index>(_fvarParents.size());
     _fvarParents.clear();
-    std::vector<Index> const coarseValues = std::move(_fvarValues);
-    _fvarValues.clear();
-    Halves halves{middles,
-                  edges,
-                  _mesh.faces,
-                  _baseFaces,
-                  coarseValues.empty() ? nullptr : &_fvarValues,
-                  _numFVarValues,
-                  _fvarParents};
+    Halves halves{edges,          _mesh.faces,
+                  _baseFaces,     coarseValues.empty() ? nullptr : &_fvarValues,
+                  _numFVarValues, _fvarParents};
     for (size_t face = 0; face < _refinementEdges.size(); ++face) {
         size_t const k = _refinementEdges[face];
         auto const corner = [&](size_t i) -> CutCorner {
             size_t const at = 3 * face + (k + i) % 3;
-            return {coarse.faces[at], coarseValues.empty() ? 0 : coarseValues[at]};
+            return {coarse[at], coarseValues.empty() ? 0 : coarseValues[at]};
         };
         halves.Cut({corner(0), corner(1), corner(2)}, coarseBaseFaces[face]);
     }
     _refinementEdges.assign(_baseFaces.size(), 0);
-    for (auto const& crease : coarse.creases) {
-        Index const edge = edges.Find(crease[0], crease[1]), middle = edge < 0 ? -1 : middles[edge];
+}
+
+void Bisection::CutCreases(std::vector<std::array<Index, 2>> const& coarse, CutEdges const& edges) {
+    for (auto const& crease : coarse) {
+        Index const middle = edges.FindMiddle(crease[0], crease[1]);
         if (middle < 0) {
             _mesh.creases.push_back(crease);
         } else {
@@ -168,6 +185,14 @@ CascadeMesh const& Bisection::Refine() {
             _mesh.creases.push_back({middle, crease[1]});
         }
     }
+}
+
+CascadeMesh const& Bisection::Refine() {
+    CutEdges const edges = FindCutEdges();
+    CascadeMesh const coarse = std::exchange(_mesh, {});
+    AddVertices(coarse.numVertices, edges);
+    CutFaces(coarse.faces, edges);
+    CutCreases(coarse.creases, edges);
     _mesh.corners = coarse.corners;
     return _mesh;
 }

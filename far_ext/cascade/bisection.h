@@ -43,6 +43,14 @@ public:
     std::vector<std::array<Index, 2>> const& GetFVarParents() const { return _fvarParents; }
 
 private:
+    struct CutEdges;
+    struct Halves;
+
+    CutEdges FindCutEdges() const;
+    void AddVertices(Index numCoarse, CutEdges const& edges);
+    void CutFaces(std::vector<Index> const& coarse, CutEdges const& edges);
+    void CutCreases(std::vector<std::array<Index, 2>> const& coarse, CutEdges const& edges);
+
     CascadeMesh _mesh;
     Index _numFVarValues = 0;
     std::vector<Index> _fvarValues;

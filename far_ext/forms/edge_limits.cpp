@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include <Eigen/Dense>
 #include <fmt/format.h>
@@ -47,9 +48,36 @@ std::vector<OrientedEdge> ListWheel(Far::TopologyLevel const& level, Index verte
     return list;
 }
 
+/// All round an interior vertex, from one of its edges on.
+std::vector<OrientedEdge> ListWholeWheel(Far::TopologyLevel const& level, Index vertex,
+                                         Index edge) {
+    return ListWheel(level, vertex, FindSpoke(level, vertex, edge),
+                     level.GetVertexFaces(vertex).size());
+}
+
 Index GetEnd(Far::TopologyLevel const& level, Index edge, Index from) {
     auto const ends = level.GetEdgeVertices(edge);
     return ends[0] == from ? ends[1] : ends[0];
+}
+
+/// An edge of a walk from vertex to vertex.
+struct Leg {
+    Index edge, from, to;
+};
+
+Leg MakeLeg(Far::TopologyLevel const& level, Index edge, Index from) {
+    return {edge, from, GetEnd(level, edge, from)};
+}
+
+/// The leg behind the regular vertex that a leg leads to.
+Leg GoStraightOn(Far::TopologyLevel const& level, Leg const& leg) {
+    auto const edges = level.GetVertexEdges(leg.to);
+    int const valence = edges.size(), back = FindSpoke(level, leg.to, leg.edge);
+    return MakeLeg(level, edges[(back + valence / 2) % valence], leg.to);
+}
+
+OrientedEdge Orient(Far::TopologyLevel const& level, Leg const& leg) {
+    return {leg.edge, GetSignFrom(level, leg.edge, leg.from)};
 }
 
 /// Limit of a regular edge a -> b over the wheels of a (from the spoke to b) and of b (from the
@@ -154,6 +182,175 @@ std::vector<OrientedEdge> WalkNeighbourhood(Far::TopologyLevel const& level, Ind
 
 }  // namespace
 
+/// Solves on a template, a neighbourhood that is regular but for its middle: refined until the
+/// middle's four rings, all that a half reads and its image, see nothing of the template's rim.
+class EdgeLimits::HalfSolver {
+public:
+    HalfSolver(Sdc::SchemeType scheme, Kind kind, int size, int spoke)
+        : _kind(kind),
+          _size(size),
+          _spoke(spoke),
+          _refiner(RefineTemplate(scheme, kind, size)),
+          _coarse(_refiner->GetLevel(kLevel)),
+          _middle(FindMiddle()),
+          _firstSpoke(kind == Kind::Dart ? FindSharpSpoke(_coarse, _middle) : 0),
+          _half(FindHalf()),
+          _unknowns(WalkNeighbourhood(_coarse, _middle, kRings)),
+          _places(_coarse.GetNumEdges(), -1) {
+        for (size_t i = 0; i < _unknowns.size(); ++i)
+            _places[_unknowns[i].edge] = static_cast<int>(i);
+    }
+
+    HalfLimit Solve() const;
+
+private:
+    static constexpr int kLevel = 3, kRings = 4;  // of eight rings round the middle
+
+    static ControlMesh MakeTemplate(Sdc::SchemeType scheme, Kind kind, int size);
+    static std::unique_ptr<Far::TopologyRefiner> RefineTemplate(Sdc::SchemeType scheme, Kind kind,
+                                                                int size);
+    Index FindMiddle() const;
+    Leg FindHalf() const;
+
+    Eigen::Index GetCount() const { return static_cast<Eigen::Index>(_unknowns.size()); }
+    Eigen::MatrixXd MakeStep() const;
+    Eigen::RowVectorXd MakeRegularLimit() const;
+    void Add(std::vector<OrientedEdge> const& edges, std::vector<double> const& weights,
+             Eigen::RowVectorXd& row) const;
+    std::vector<double> Take(std::vector<OrientedEdge> const& edges, Eigen::VectorXd& rest) const;
+
+    Kind _kind;
+    int _size, _spoke;
+    std::unique_ptr<Far::TopologyRefiner> _refiner;
+    Far::TopologyLevel _coarse;
+    Index _middle;
+    int _firstSpoke;
+    Leg _half;  // on the coarse level, from the middle outwards
+    std::vector<OrientedEdge> _unknowns;
+    std::vector<int> _places;  // per edge of the coarse level: its unknown, or -1
+};
+
+ControlMesh EdgeLimits::HalfSolver::MakeTemplate(Sdc::SchemeType scheme, Kind kind, int size) {
+    bool const isLoop = scheme == Sdc::SCHEME_LOOP,
+               isOpen = kind == Kind::Curve || kind == Kind::Corner;
+    ControlMesh mesh;
+    mesh.scheme = scheme;
+    mesh.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+    int const numSpokes = size + (isOpen ? 1 : 0);
+    mesh.numVertices = 1 + numSpokes + (isLoop ? 0 : size);
+    for (int i = 0; i < size; ++i) {
+        Index const a = 1 + i, b = 1 + (i + 1) % numSpokes;
+        mesh.faceSizes.push_back(isLoop ? 3 : 4);
+        if (isLoop)
+            mesh.faceVertices.insert(mesh.faceVertices.end(), {0, a, b});
+        else
+            mesh.faceVertices.insert(mesh.faceVertices.end(), {0, a, 1 + numSpokes + i, b});
+    }
+    // Fans of a crease need no mark: a boundary has the crease's rule [Forms 5].
+    if (kind == Kind::Corner) {
+        mesh.cornerVertices.push_back(0);
+        mesh.cornerSharpness.push_back(Sdc::Crease::SHARPNESS_INFINITE);
+    }
+    if (kind == Kind::Dart) {
+        mesh.creaseVertexPairs = {0, 1};
+        mesh.creaseSharpness.push_back(Sdc::Crease::SHARPNESS_INFINITE);
+    }
+    return mesh;
+}
+
+std::unique_ptr<Far::TopologyRefiner> EdgeLimits::HalfSolver::RefineTemplate(Sdc::SchemeType scheme,
+                                                                             Kind kind, int size) {
+    auto refiner = CreateRefiner(MakeTemplate(scheme, kind, size));
+    Far::TopologyRefiner::UniformOptions options(kLevel + 1);
+    options.fullTopologyInLastLevel = true;
+    refiner->RefineUniform(options);
+    return refiner;
+}
+
+Index EdgeLimits::HalfSolver::FindMiddle() const {
+    Index middle = 0;
+    for (int level = 0; level < kLevel; ++level)
+        middle = _refiner->GetLevel(level).GetVertexChildVertex(middle);
+    return middle;
+}
+
+Leg EdgeLimits::HalfSolver::FindHalf() const {
+    auto const spokes = _coarse.GetVertexEdges(_middle);
+    return MakeLeg(_coarse, spokes[(_firstSpoke + _spoke) % spokes.size()], _middle);
+}
+
+/// A: one step of S1 on the neighbourhood. What four refined rings read lies within four coarse
+/// ones.
+Eigen::MatrixXd EdgeLimits::HalfSolver::MakeStep() const {
+    auto const images = WalkNeighbourhood(_refiner->GetLevel(kLevel + 1),
+                                          _coarse.GetVertexChildVertex(_middle), kRings);
+    SparseRows const s1 = BuildFormStencils(*_refiner, kLevel + 1).s1;
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(GetCount(), GetCount());
+    for (Eigen::Index row = 0; row < GetCount(); ++row) {
+        auto const& image = images[row];
+        for (int k = s1.offsets[image.edge]; k < s1.offsets[image.edge + 1]; ++k) {
+            int const column = _places[s1.indices[k]];
+            if (column >= 0) A(row, column) += image.sign * _unknowns[column].sign * s1.weights[k];
+        }
+    }
+    return A;
+}
+
+/// l: the regular limit one step out along the spoke, from its end straight on.
+Eigen::RowVectorXd EdgeLimits::HalfSolver::MakeRegularLimit() const {
+    Eigen::RowVectorXd regular = Eigen::RowVectorXd::Zero(GetCount());
+    Leg const next = GoStraightOn(_coarse, _half);
+    if (_kind == Kind::Dart && _spoke == 0) {  // along the crease: a cubic curve's
+        Leg const beyond = GoStraightOn(_coarse, next);
+        Add({Orient(_coarse, _half), Orient(_coarse, next), Orient(_coarse, beyond)},
+            {1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0}, regular);
+    } else {
+        RegularStencil const stencil =
+            MakeRegularStencil(_refiner->GetSchemeType() == Sdc::SCHEME_LOOP);
+        Add(ListWholeWheel(_coarse, next.from, next.edge), stencil.atStart, regular);
+        Add(ListWholeWheel(_coarse, next.to, next.edge), stencil.atEnd, regular);
+    }
+    return regular;
+}
+
+void EdgeLimits::HalfSolver::Add(std::vector<OrientedEdge> const& edges,
+                                 std::vector<double> const& weights,
+                                 Eigen::RowVectorXd& row) const {
+    for (size_t i = 0; i < weights.size(); ++i) {
+        if (weights[i] == 0.0) continue;
+        int const column = _places[edges[i].edge];
+        row[column] += weights[i] * edges[i].sign * _unknowns[column].sign;
+    }
+}
+
+/// Moves the weights of some edges out of `rest`: an edge of two wheels counts once.
+std::vector<double> EdgeLimits::HalfSolver::Take(std::vector<OrientedEdge> const& edges,
+                                                 Eigen::VectorXd& rest) const {
+    std::vector<double> weights;
+    for (auto const& edge : edges) {
+        int const column = _places[edge.edge];
+        weights.push_back(column >= 0 ? rest[column] * edge.sign * _unknowns[column].sign : 0.0);
+        if (column >= 0) rest[column] = 0.0;
+    }
+    return weights;
+}
+
+/// On the next level the regular edge one step out and the half's own are what the half is made of,
+/// hence L = l A + L A.
+EdgeLimits::HalfLimit EdgeLimits::HalfSolver::Solve() const {
+    Eigen::MatrixXd const A = MakeStep();
+    Eigen::RowVectorXd const regular = MakeRegularLimit();
+    // L (I - A) = l A; S1 halves, so that 1 is no eigenvalue of A.
+    Eigen::MatrixXd const system =
+        (Eigen::MatrixXd::Identity(GetCount(), GetCount()) - A).transpose();
+    Eigen::VectorXd rest = system.partialPivLu().solve((regular * A).transpose());
+    int const firstSpoke = _kind == Kind::Interior ? _spoke : _firstSpoke;
+    HalfLimit half;
+    half.atVertex = Take(ListWheel(_coarse, _middle, firstSpoke, _size), rest);
+    half.atMiddle = Take(ListWholeWheel(_coarse, _half.to, _half.edge), rest);
+    return half;
+}
+
 EdgeLimits::EdgeLimits(Far::TopologyRefiner const& refiner, int level)
     : _refiner(refiner),
       _coarse(refiner.GetLevel(level)),
@@ -200,111 +397,6 @@ EdgeLimits::Fan EdgeLimits::FindFan(Index vertex, Index edge) const {
     return {kind, first, size == 0 ? k : size, (spoke - first + count) % count};
 }
 
-/// Builds a neighbourhood that is regular but for its middle, and solves there: refined until the
-/// middle's four rings, all that a half reads and its image, see nothing of the template's rim.
-EdgeLimits::HalfLimit EdgeLimits::SolveHalf(Kind kind, int size, int spoke) const {
-    bool const isLoop = _refiner.GetSchemeType() == Sdc::SCHEME_LOOP,
-               isOpen = kind == Kind::Curve || kind == Kind::Corner;
-    ControlMesh mesh;
-    mesh.scheme = _refiner.GetSchemeType();
-    mesh.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-    int const numSpokes = size + (isOpen ? 1 : 0);
-    mesh.numVertices = 1 + numSpokes + (isLoop ? 0 : size);
-    for (int i = 0; i < size; ++i) {
-        Index const a = 1 + i, b = 1 + (i + 1) % numSpokes;
-        mesh.faceSizes.push_back(isLoop ? 3 : 4);
-        if (isLoop)
-            mesh.faceVertices.insert(mesh.faceVertices.end(), {0, a, b});
-        else
-            mesh.faceVertices.insert(mesh.faceVertices.end(), {0, a, 1 + numSpokes + i, b});
-    }
-    // Fans of a crease need no mark: a boundary has the crease's rule [Forms 5].
-    if (kind == Kind::Corner) {
-        mesh.cornerVertices.push_back(0);
-        mesh.cornerSharpness.push_back(Sdc::Crease::SHARPNESS_INFINITE);
-    }
-    if (kind == Kind::Dart) {
-        mesh.creaseVertexPairs = {0, 1};
-        mesh.creaseSharpness.push_back(Sdc::Crease::SHARPNESS_INFINITE);
-    }
-    constexpr int kLevel = 3, kRings = 4;  // of eight rings round the middle
-    auto const refiner = CreateRefiner(mesh);
-    Far::TopologyRefiner::UniformOptions options(kLevel + 1);
-    options.fullTopologyInLastLevel = true;
-    refiner->RefineUniform(options);
-    Index middle = 0;
-    for (int level = 0; level < kLevel; ++level)
-        middle = refiner->GetLevel(level).GetVertexChildVertex(middle);
-    auto const coarse = refiner->GetLevel(kLevel), fine = refiner->GetLevel(kLevel + 1);
-
-    auto const unknowns = WalkNeighbourhood(coarse, middle, kRings),
-               images = WalkNeighbourhood(fine, coarse.GetVertexChildVertex(middle), kRings);
-    // A: one step of S1 on the neighbourhood. What four refined rings read lies within four coarse
-    // ones.
-    Eigen::Index const count = static_cast<Eigen::Index>(unknowns.size());
-    std::vector<int> place(coarse.GetNumEdges(), -1);
-    for (size_t i = 0; i < unknowns.size(); ++i) place[unknowns[i].edge] = static_cast<int>(i);
-    SparseRows const s1 = BuildFormStencils(*refiner, kLevel + 1).s1;
-    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(count, count);
-    for (Eigen::Index row = 0; row < count; ++row) {
-        auto const& image = images[row];
-        for (int k = s1.offsets[image.edge]; k < s1.offsets[image.edge + 1]; ++k) {
-            int const column = place[s1.indices[k]];
-            if (column >= 0) A(row, column) += image.sign * unknowns[column].sign * s1.weights[k];
-        }
-    }
-    // l: the regular limit one step out along the spoke, from its end straight on. On the next
-    // level that edge and the half's own are what the half is made of, hence L = l A + L A.
-    int const firstSpoke = kind == Kind::Dart ? FindSharpSpoke(coarse, middle) : 0;
-    Index const spokeEdge =
-        coarse.GetVertexEdges(middle)[(firstSpoke + spoke) % coarse.GetVertexEdges(middle).size()];
-    Index const end = GetEnd(coarse, spokeEdge, middle);
-    int const back = FindSpoke(coarse, end, spokeEdge), valence = coarse.GetVertexEdges(end).size();
-    int const ahead = (back + valence / 2) % valence;
-    Index const next = coarse.GetVertexEdges(end)[ahead], far = GetEnd(coarse, next, end);
-    RegularStencil const stencil = MakeRegularStencil(isLoop);
-    Eigen::RowVectorXd regular = Eigen::RowVectorXd::Zero(count);
-    auto const add = [&](std::vector<OrientedEdge> const& edges,
-                         std::vector<double> const& weights) {
-        for (size_t i = 0; i < weights.size(); ++i) {
-            if (weights[i] == 0.0) continue;
-            int const column = place[edges[i].edge];
-            regular[column] += weights[i] * edges[i].sign * unknowns[column].sign;
-        }
-    };
-    if (kind == Kind::Dart && spoke == 0) {  // along the crease: a cubic curve's
-        int const nextBack = FindSpoke(coarse, far, next),
-                  farValence = coarse.GetVertexEdges(far).size();
-        Index const beyond = coarse.GetVertexEdges(far)[(nextBack + farValence / 2) % farValence];
-        add({{spokeEdge, GetSignFrom(coarse, spokeEdge, middle)},
-             {next, GetSignFrom(coarse, next, end)},
-             {beyond, GetSignFrom(coarse, beyond, far)}},
-            {1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0});
-    } else {
-        add(ListWheel(coarse, end, ahead, valence), stencil.atStart);
-        add(ListWheel(coarse, far, FindSpoke(coarse, far, next), coarse.GetVertexEdges(far).size()),
-            stencil.atEnd);
-    }
-
-    // L (I - A) = l A; S1 halves, so that 1 is no eigenvalue of A.
-    Eigen::MatrixXd const system = (Eigen::MatrixXd::Identity(count, count) - A).transpose();
-    Eigen::VectorXd rest = system.partialPivLu().solve((regular * A).transpose());
-    auto const take = [&](std::vector<OrientedEdge> const& edges) {
-        std::vector<double> weights;
-        for (auto const& edge : edges) {
-            int const column = place[edge.edge];
-            weights.push_back(column >= 0 ? rest[column] * edge.sign * unknowns[column].sign : 0.0);
-            if (column >= 0) rest[column] = 0.0;  // an edge of both wheels counts once
-        }
-        return weights;
-    };
-    HalfLimit half;
-    half.atVertex =
-        take(ListWheel(coarse, middle, kind == Kind::Interior ? spoke : firstSpoke, size));
-    half.atMiddle = take(ListWheel(coarse, end, back, valence));
-    return half;
-}
-
 EdgeLimits::HalfLimit const& EdgeLimits::FindHalf(Fan const& fan) {
     if (fan.size > kMaxFan) {
         throw Error(ErrorCode::TooLarge,
@@ -314,7 +406,8 @@ EdgeLimits::HalfLimit const& EdgeLimits::FindHalf(Fan const& fan) {
     auto const key = std::tuple(fan.kind, fan.size, fan.kind == Kind::Interior ? 0 : fan.spoke);
     auto const found = _halves.find(key);
     if (found != _halves.end()) return found->second;
-    return _halves.emplace(key, SolveHalf(fan.kind, fan.size, std::get<2>(key))).first->second;
+    HalfSolver const solver(_refiner.GetSchemeType(), fan.kind, fan.size, std::get<2>(key));
+    return _halves.emplace(key, solver.Solve()).first->second;
 }
 
 /// Adds the value of a refined edge, as weights over the level's.
@@ -345,8 +438,7 @@ void EdgeLimits::AddHalf(Index vertex, Index edge, double sign, WeightRow& row) 
             AddRefined(edges[i].edge, sign * weights[i] * edges[i].sign, row);
     };
     add(ListWheel(_fine, v, fan.first, fan.size), limit.atVertex);
-    add(ListWheel(_fine, m, FindSpoke(_fine, m, half), _fine.GetVertexFaces(m).size()),
-        limit.atMiddle);
+    add(ListWholeWheel(_fine, m, half), limit.atMiddle);
 }
 
 WeightRow EdgeLimits::Find(Index edge) {

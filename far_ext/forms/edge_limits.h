@@ -49,10 +49,10 @@ private:
     struct HalfLimit {
         std::vector<double> atVertex, atMiddle;
     };
+    class HalfSolver;
 
     Fan FindFan(Index vertex, Index edge) const;
     HalfLimit const& FindHalf(Fan const& fan);
-    HalfLimit SolveHalf(Kind kind, int size, int spoke) const;
     void AddHalf(Index vertex, Index edge, double sign, WeightRow& row);
     void AddRefined(Index fineEdge, double weight, WeightRow& row) const;
 
