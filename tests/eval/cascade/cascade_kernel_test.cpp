@@ -142,8 +142,8 @@ TEST(CascadeKernel, SweepsTogetherAreSweepsOneAfterAnother) {
     }
 }
 
-// 2048 rows fill a block, and the next one is empty.
-TEST(CascadeKernel, EmptyBlocksHaveNoShapes) {
+// 2048 rows are a block, and no empty one follows it, whose shapes would be none.
+TEST(CascadeKernel, RowsThatFillABlockHaveTheirShapes) {
     auto const scene = test::MakeTriangleTorus(32, 16);
     auto const level = far_ext::BuildCascadeLevel(
         far_ext::MakeCascadeMesh(*test::MakeRefiner(scene, 1), 1), {}, BoundaryRule::Fixed);
