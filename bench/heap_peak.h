@@ -41,6 +41,7 @@ double MeasureHeapPeak(Work const& work) {
 
 }  // namespace limn::bench
 
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): the C library's names
 extern "C" {
 
 void* __libc_malloc(size_t);
@@ -89,3 +90,4 @@ void free(void* block) {
 }
 
 }  // extern "C"
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)

@@ -15,7 +15,7 @@ namespace limn::bench {
 class OsdProgressive {
 public:
     OsdProgressive(far_ext::LimitMatrix const& A, std::vector<double> const& M)
-        : _A(A),
+        : _limitMatrix(A),
           _weights(A.MakeFloatWeights()),
           _data(M.begin(), M.end()),
           _control(_data.size()),
@@ -27,10 +27,10 @@ public:
         Osd::BufferDescriptor const rows(0, 3, 3);
         _control = _data;
         for (int count = 1;; ++count) {
-            Osd::CpuEvaluator::EvalStencils(_control.data(), rows, _limit.data(), rows,
-                                            _A.GetSizes().data(), _A.GetOffsets().data(),
-                                            _A.GetControlIndices().data(), _weights.data(), 0,
-                                            _A.GetNumStencils());
+            Osd::CpuEvaluator::EvalStencils(
+                _control.data(), rows, _limit.data(), rows, _limitMatrix.GetSizes().data(),
+                _limitMatrix.GetOffsets().data(), _limitMatrix.GetControlIndices().data(),
+                _weights.data(), 0, _limitMatrix.GetNumStencils());
             float largest = 0.0f;
             for (size_t i = 0; i < _data.size(); i += 3) {
                 float square = 0.0f;
@@ -48,7 +48,7 @@ public:
     std::vector<float> const& GetControl() const { return _control; }
 
 private:
-    far_ext::LimitMatrix const& _A;
+    far_ext::LimitMatrix const& _limitMatrix;
     std::vector<float> _weights, _data, _control, _limit;
 };
 

@@ -12,8 +12,6 @@ namespace limn::engine {
 
 namespace {
 
-constexpr int kTile = ExrSpec::kTileSize;
-
 /// Fills uncovered texels of a strip from the covered ones round them, tile by tile; says in
 /// `isFilled` which.
 class Padder {
@@ -69,6 +67,7 @@ void PadStrip(std::span<std::shared_ptr<Strip> const> window, Strip& strip, int 
     strip.isFilled = strip.isCovered;
     Padder const padder(window, strip, padding);
     if (!padder.HasWork()) return;
+    constexpr int kTile = ExrSpec::kTileSize;
     int const width = strip.texels.width;
     tbb::parallel_for(
         tbb::blocked_range<int>(0, (width + kTile - 1) / kTile), [&](auto const& tiles) {

@@ -48,6 +48,7 @@ std::vector<EdgeWeights> FindWeights(Far::TopologyRefiner const& refiner,
                                      std::span<double const> positions) {
     auto const places = RestrictPositions(refiner, positions);
     std::vector<EdgeWeights> weights;
+    weights.reserve(static_cast<size_t>(refiner.GetNumLevels()));
     for (int k = 0; k < refiner.GetMaxLevel(); ++k)
         weights.push_back({FindCoarseWeights(refiner.GetLevel(k), places[k]), {}});
     weights.push_back(

@@ -46,6 +46,7 @@ Curve SubdivideCurve(Curve const& coarse, CurveRule rule) {
 
 std::vector<DoubleLanes> FindCurveDeltas(Curve const& curve) {
     std::vector<DoubleLanes> deltas;
+    deltas.reserve(curve.points.size());
     int const size = static_cast<int>(curve.points.size());
     for (int i = 0; i < size; ++i) {
         deltas.push_back(GetPoint(curve, i) -

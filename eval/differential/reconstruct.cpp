@@ -140,6 +140,7 @@ ReconstructReport Reconstructor::Solve(std::span<double const> deltas, std::span
             static_cast<double>(level.offsets[row + 1] - level.offsets[row]) * Get(deltas, vertex));
     });
     std::vector<DoubleLanes> places;
+    places.reserve(_handles.size());
     for (Index handle : _handles) places.push_back(Get(positions, handle));
     for (auto const& block : level.blocks) {
         if (block.isSingular)

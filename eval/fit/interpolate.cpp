@@ -132,14 +132,15 @@ double FindSize(std::span<double const> values, int length) {
 
 Interpolator::Interpolator(Far::TopologyRefiner const& refiner, int level,
                            far_ext::LimitOptions const& options)
-    : _A(LimitOperator::Build(refiner, level, options).Reorder(_vertices)), _singular(_A) {}
+    : _operator(LimitOperator::Build(refiner, level, options).Reorder(_vertices)),
+      _singular(_operator) {}
 
 std::vector<double> Interpolator::FindLimits(std::span<double const> values, int length) const {
     std::vector<double> result(values.size());
     ForEachBlockOfChannels(length, [&](int first, int count) {
         far_ext::LargeArray<double> rows(_vertices.size() * count), limits(rows.size());
         Gather(values, length, first, count, _vertices, rows);
-        _A.Apply(rows, count, limits);
+        _operator.Apply(rows, count, limits);
         Scatter(limits, length, first, count, _vertices, result);
     });
     return result;
@@ -147,7 +148,7 @@ std::vector<double> Interpolator::FindLimits(std::span<double const> values, int
 
 SolveReport Interpolator::Solve(std::span<double const> M, int length, std::span<double> P,
                                 InterpolateOptions const& options) const {
-    Validate(_A, M, length, P, options);
+    Validate(_operator, M, length, P, options);
     SolveReport report;
     report.converged = true;
     double const size = FindSize(M, length);
@@ -158,7 +159,7 @@ SolveReport Interpolator::Solve(std::span<double const> M, int length, std::span
             count < length ? std::span<double>(own) : P;  // P serves as memory until the end
         Gather(M, length, first, count, _vertices, data);
         std::copy(data.begin(), data.end(), solution.begin());
-        LimitProblem problem{_A,
+        LimitProblem problem{_operator,
                              count,
                              data.data(),
                              solution.data(),
@@ -182,13 +183,13 @@ Index Interpolator::FindFirstVertex(SingularComponents::Component const& compone
 
 double Interpolator::ChooseLambda(InterpolateOptions const& options) const {
     if (options.lambdaMin > 0.0) return options.lambdaMin;
-    double const bound = _A.GetEigenvalueBound();
+    double const bound = _operator.GetEigenvalueBound();
     if (options.method == SolveMethod::Progressive ||
         options.method == SolveMethod::ConjugateGradients ||
         options.method == SolveMethod::Direct || bound >= kSharpBound) {
         return std::max(bound, kSmallLambda);
     }
-    if (_A.GetNumVertices() > kMaxEstimated) return std::max(bound, kUsualLambda);
+    if (_operator.GetNumVertices() > kMaxEstimated) return std::max(bound, kUsualLambda);
     return std::max(EstimateSmallestEigenvalue(), kSmallLambda);
 }
 
@@ -218,7 +219,8 @@ IterationResult Interpolator::Run(LimitProblem const& problem, InterpolateOption
         used = method;
         // What diverged is no start.
         if (!(result.residual < 1.0))
-            std::copy_n(problem.data, static_cast<size_t>(_A.GetNumVertices()) * problem.length,
+            std::copy_n(problem.data,
+                        static_cast<size_t>(_operator.GetNumVertices()) * problem.length,
                         problem.solution);
         if (!(result.residual < 1.0)) SolveCurves(problem);
         IterationResult next = run();
@@ -232,7 +234,7 @@ IterationResult Interpolator::Run(LimitProblem const& problem, InterpolateOption
         rest.maxApplications -= result.applications;
         goOn(SolveMethod::ConjugateGradients, [&] { return RunConjugateGradients(rest); });
     }
-    bool const isSmallEnough = _A.GetNumRows(LimitOperator::Stage::Rest) <= kMaxFactorised;
+    bool const isSmallEnough = _operator.GetNumRows(LimitOperator::Stage::Rest) <= kMaxFactorised;
     if (isAutomatic && !result.converged && isSmallEnough)
         goOn(SolveMethod::Direct, [&] { return SolveDirectly(problem, pinned); });
     return result;
@@ -253,7 +255,8 @@ SolveReport Interpolator::SolveBlock(LimitProblem& problem,
         worstDefect = std::max(worstDefect, defect);
     }
     if (!_singular.Get().empty()) {
-        projected.assign(data, data + static_cast<size_t>(_A.GetNumVertices()) * problem.length);
+        projected.assign(data,
+                         data + static_cast<size_t>(_operator.GetNumVertices()) * problem.length);
         _singular.Project(projected.data(), problem.length);
         std::copy(projected.begin(), projected.end(), problem.solution);
         problem.data = projected.data();
@@ -264,7 +267,7 @@ SolveReport Interpolator::SolveBlock(LimitProblem& problem,
     report.method =
         options.method == SolveMethod::Automatic ? SolveMethod::Chebyshev : options.method;
     IterationResult result;
-    if (_A.GetNumRows(LimitOperator::Stage::Rest) > 0)
+    if (_operator.GetNumRows(LimitOperator::Stage::Rest) > 0)
         result = Run(problem, options, report.method);
     _singular.Project(problem.solution, problem.length);
 
@@ -280,12 +283,13 @@ SolveReport Interpolator::SolveBlock(LimitProblem& problem,
 }
 
 double Interpolator::EstimateSmallestEigenvalue(int steps) const {
-    if (_A.GetNumRows(LimitOperator::Stage::Rest) == 0) return 1.0;
-    size_t const count = _A.GetNumVertices();
+    if (_operator.GetNumRows(LimitOperator::Stage::Rest) == 0) return 1.0;
+    size_t const count = _operator.GetNumVertices();
     std::vector<double> noise = MakeNoise(count);
     _singular.Project(noise.data(), 1);
     std::vector<double> solution(count, 0.0);
-    LimitProblem const problem{_A, 1, noise.data(), solution.data(), 1.0, 1e-14, steps + 1, {}};
+    LimitProblem const problem{_operator, 1,     noise.data(), solution.data(),
+                               1.0,       1e-14, steps + 1,    {}};
     return RunConjugateGradients(problem).lambdaMin;
 }
 

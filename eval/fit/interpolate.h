@@ -73,7 +73,7 @@ public:
                           far_ext::LimitOptions const& options = {});
 
     /// A, its rows in the order of GetVertices.
-    LimitOperator const& GetOperator() const { return _A; }
+    LimitOperator const& GetOperator() const { return _operator; }
 
     /// Per row of A the vertex it belongs to.
     std::vector<Index> const& GetVertices() const { return _vertices; }
@@ -102,7 +102,7 @@ private:
     Index FindFirstVertex(SingularComponents::Component const& component) const;
 
     std::vector<Index> _vertices;  // before what it is needed for
-    LimitOperator _A;
+    LimitOperator _operator;
     SingularComponents _singular;
 };
 

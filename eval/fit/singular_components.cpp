@@ -36,13 +36,11 @@ SingularComponents::SingularComponents(LimitOperator const& A) {
             Index const row = component.vertices[i];
             component.signs.push_back(signs[row]);
             for (Index neighbour : A.GetNeighbours(row).first(3)) {
-                if (!A.GetClass(neighbour).isEvenCubic) {
+                if (!A.GetClass(neighbour).isEvenCubic || signs[neighbour] == signs[row]) {
                     isSingular = false;
                 } else if (signs[neighbour] == 0) {
                     signs[neighbour] = static_cast<signed char>(-signs[row]);
                     component.vertices.push_back(neighbour);
-                } else if (signs[neighbour] == signs[row]) {
-                    isSingular = false;
                 }
             }
         }

@@ -39,23 +39,23 @@ template <int Lanes>
 class Correction {
 public:
     explicit Correction(LimitOperator const& A)
-        : _A(A),
+        : _operator(A),
           _right(A.GetNumVertices() * Row::kStride, 0.0f),
           _current(_right),
           _previous(_right) {}
 
     int GetStepsPerPass() const {
-        return CountStepsPerPass(_A.GetNumVertices(), _A.GetBandwidth());
+        return CountStepsPerPass(_operator.GetNumVertices(), _operator.GetBandwidth());
     }
 
     /// Steps in place, with max |R - A E| from before each of them.
     std::vector<float> Take(std::span<Step const> steps) {
         if (steps.size() == 1) return {TakeOne(steps[0])};
-        Index const numRows = _A.GetNumVertices();
+        Index const numRows = _operator.GetNumVertices();
         size_t const numBlocks = CountBlocks(numRows, kRowsPerBlock);
         std::vector<std::vector<float>> maxima(steps.size(), std::vector<float>(numBlocks, 0.0f));
         float* const buffers[] = {_current.data(), _previous.data()};
-        RunStepsInOnePass(static_cast<Index>(steps.size()), numRows, _A.GetBandwidth(),
+        RunStepsInOnePass(static_cast<Index>(steps.size()), numRows, _operator.GetBandwidth(),
                           [&](Index step, Index begin, Index end) {
                               maxima[step][begin / kRowsPerBlock] =
                                   TakeRows(steps[step], begin, end, buffers[step % 2],
@@ -63,6 +63,7 @@ public:
                           });
         if (steps.size() % 2 == 1) std::swap(_current, _previous);
         std::vector<float> residuals;
+        residuals.reserve(maxima.size());
         for (auto const& ofStep : maxima) residuals.push_back(std::sqrt(FindLargest(ofStep)));
         return residuals;
     }
@@ -71,7 +72,7 @@ public:
     /// and E_{k-1} is less by it. The step that follows needs no A.
     void Restart(double a, double b) {
         float const fa = static_cast<float>(a), fb = static_cast<float>(b);
-        ForEachRow(_A.GetNumVertices(), [&](Index row) {
+        ForEachRow(_operator.GetNumVertices(), [&](Index row) {
             Row const before = Row::Load(_previous.data(), row) - Row::Load(_current.data(), row);
             (fb * Row::Load(_right.data(), row) - fa * before).Store(_previous.data(), row);
             Row().Store(_current.data(), row);
@@ -88,7 +89,7 @@ private:
 
     float TakeOne(Step step) {
         auto const maxima =
-            MapBlocks(_A.GetNumVertices(), kRowsPerSum, [&](Index begin, Index end) {
+            MapBlocks(_operator.GetNumVertices(), kRowsPerSum, [&](Index begin, Index end) {
                 return TakeRows(step, begin, end, _current.data(), _previous.data());
             });
         std::swap(_current, _previous);
@@ -99,17 +100,18 @@ private:
     /// E_k|^2.
     float TakeRows(Step step, Index begin, Index end, float const* current, float* previous) const {
         float largest = 0.0f;
-        _A.ForEachRow<Row>(begin, end, Stage::Rest, current,
-                           [&](Index row, auto const&, Row const& own, Row const& limit) {
-                               Row const residual = Row::Load(_right.data(), row) - limit;
-                               largest = std::max(largest, residual.SquaredLength());
-                               (own + step.a * (own - Row::Load(previous, row)) + step.b * residual)
-                                   .Store(previous, row);
-                           });
+        _operator.ForEachRow<Row>(
+            begin, end, Stage::Rest, current,
+            [&](Index row, auto const&, Row const& own, Row const& limit) {
+                Row const residual = Row::Load(_right.data(), row) - limit;
+                largest = std::max(largest, residual.SquaredLength());
+                (own + step.a * (own - Row::Load(previous, row)) + step.b * residual)
+                    .Store(previous, row);
+            });
         return largest;
     }
 
-    LimitOperator const& _A;
+    LimitOperator const& _operator;
     far_ext::LargeArray<float> _right, _current,
         _previous;  // of vertices that are not of the rest: 0
 };

@@ -98,6 +98,7 @@ WeightRow BuildCornerLimit(FaceRing const& base, int corner, Sdc::SchemeType sch
         if (child.ring == ring)
             return Prune(FindStationaryLimit(child.weights, ring.faceVertices[corner], points));
         std::vector<WeightRow> childPoints;
+        childPoints.reserve(child.weights.GetNumRows());
         for (int row = 0; row < child.weights.GetNumRows(); ++row)
             childPoints.push_back(Compose(child.weights, row, points));
         points = std::move(childPoints);
