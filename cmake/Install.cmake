@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-# The install tree: headers under include/limn, the floors as limn::far_ext, limn::eval, limn::engine.
+# The install tree: public headers under include/limn, the floors as limn::far_ext, limn::eval, limn::engine.
 include(CMakePackageConfigHelpers)
 
-install(TARGETS limn_far_ext limn_eval limn_evaluators limn_engine EXPORT limnTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS limn_far_ext limn_eval limn_evaluators limn_engine EXPORT limnTargets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/limn)
 install(TARGETS limn RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS limn_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/limn)
-foreach(floor far_ext eval engine)
-    install(DIRECTORY ${PROJECT_SOURCE_DIR}/${floor} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/limn
-        FILES_MATCHING PATTERN "*.h" PATTERN "cli" EXCLUDE)
-endforeach()
+install(FILES ${PROJECT_BINARY_DIR}/generated/engine/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/limn)
 install(EXPORT limnTargets NAMESPACE limn:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/limn)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/limnConfig.cmake.in ${PROJECT_BINARY_DIR}/limnConfig.cmake
     INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/limn)

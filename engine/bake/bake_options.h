@@ -23,7 +23,6 @@ struct BakeOptions : MapOptions {
     bool skipsExisting = false;
     bool hasPreview = false;
     bool wantsChecksums = false;  ///< fill BakeOutput::sha256
-    std::string version;          ///< of the program, for the header
 };
 
 }  // namespace limn::engine

@@ -10,6 +10,7 @@
 #include "engine/images/exr_names.h"
 #include "engine/scene/subdivision_names.h"
 #include "engine/scene/udim.h"
+#include "engine/version.h"
 
 namespace limn::engine {
 
@@ -100,7 +101,7 @@ Attributes MakeAttributes(BakeOptions const& options, FileLayout const& file, Mo
         {"limn:map", file.mapName},
         {"limn:options", MakeOptionText(options, file, model)},
         {"limn:units", units},
-        {"limn:version", options.version}};
+        {"limn:version", kVersionAndBuild}};
     if (options.against) attributes.emplace_back("limn:against", options.against->GetSha256());
     if (options.encoding) {
         attributes.emplace_back("limn:scale", fmt::format("{}", options.encoding->scale));

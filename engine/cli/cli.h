@@ -18,9 +18,6 @@
 
 namespace limn::cli {
 
-/// Version and build, as `limn --version` prints it and reports and headers quote it.
-std::string GetVersion();
-
 /// Options every verb shares (docs: "The command line").
 struct CommonOptions {
     std::optional<std::string> scheme, boundary, fvar, creases, triangles;

@@ -80,7 +80,6 @@ engine::BakeOptions MakeOptions(BakeArguments const& a, CommonOptions const& com
     options.compression = engine::kExrCompressionWords.Parse(a.compression);
     options.isLeftHanded = common.IsLeftHanded();
     options.wantsChecksums = !common.reportPath.empty();
-    options.version = GetVersion();
     return options;
 }
 

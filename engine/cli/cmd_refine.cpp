@@ -96,8 +96,9 @@ void CheckSpace(RefineArguments const& a, CLI::App const& verb) {
 
 /// Polylines by the rule that boundaries follow: cubic B-spline, or four-point for butterfly.
 int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& context) {
-    for (auto const& flags : {kDifferentialOptions, {"--limit"}})
-        RefuseEach(verb, flags, "means nothing with --curve; leave it out");
+    constexpr char const* kWhy = "means nothing with --curve; leave it out";
+    RefuseEach(verb, kDifferentialOptions, kWhy);
+    RefuseEach(verb, {"--limit"}, kWhy);
     bool const isButterfly = a.rule && a.rule->rule == SubdivisionRule::Butterfly;
     auto const rule = isButterfly ? eval::CurveRule::FourPoint : eval::CurveRule::CubicBSpline;
     auto curves = engine::ReadPolylines(a.mesh);

@@ -11,15 +11,12 @@
 #include "engine/io/mesh_reader.h"
 #include "engine/scene/defects.h"
 #include "engine/scene/subdivision_names.h"
+#include "engine/version.h"
 #include "far_ext/error.h"
 
 namespace limn::cli {
 
 using engine::Scene;
-
-std::string GetVersion() {
-    return LIMN_VERSION " (OpenSubdiv 3.5)";
-}
 
 namespace {
 
@@ -54,7 +51,7 @@ Context::Context(CommonOptions const& common, std::string command,
     if (!common.reportPath.empty() && common.reportPath != "-") {
         _reportFile = std::make_unique<engine::AtomicFile>(common.reportPath);
     }
-    _report["limn_version"] = GetVersion();
+    _report["limn_version"] = kVersionAndBuild;
     _report["command"] = command;
     _report["options"] = std::move(arguments);
     _report["inputs"] = nlohmann::json::array();

@@ -12,6 +12,7 @@
 #include "engine/cli/option_names.h"
 #include "engine/cli/signals.h"
 #include "engine/cli/word_option.h"
+#include "engine/version.h"
 #include "far_ext/error.h"
 
 namespace {
@@ -96,7 +97,7 @@ int Run(limn::cli::Verb const& verb, CommonOptions const& common,
 
 int main(int argc, char** argv) {
     CLI::App app("limn bakes the true limit of subdivision surfaces.", "limn");
-    app.set_version_flag("--version", limn::cli::GetVersion());
+    app.set_version_flag("--version", limn::kVersionAndBuild);
     app.require_subcommand(1);
     app.get_formatter()->column_width(34);
     CommonOptions common;

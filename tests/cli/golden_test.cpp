@@ -51,7 +51,6 @@ TEST_P(GoldenBake, IsWhatItWas) {
     options.width = options.height = 64;
     options.samplesPerSide = 2;
     options.hasCoverage = true;
-    options.version = "golden";
     engine::Job job;
     engine::Bake(engine::Model::Build(spot), options, job);
     engine::ExrLookup lookup;

@@ -27,7 +27,6 @@ BakeOptions MakeOptions(std::string const& pattern, std::vector<std::string> map
     options.maps = std::move(maps);
     options.width = options.height = size;
     options.wantsChecksums = true;
-    options.version = "test";
     return options;
 }
 
