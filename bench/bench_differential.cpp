@@ -163,9 +163,7 @@ void Run(int numRounds) {
         std::vector<std::pair<engine::Scene, int>> regular, irregular;
         for (auto const& [side, levels] : {std::pair{36, 2}, {36, 3}, {36, 4}, {62, 4}, {63, 5}})
             regular.emplace_back(test::MakeTriangleTorus(side, side), levels);
-        engine::Scene const cage = test::HasAsset("tri/eight.off")
-                                       ? test::LoadAsset("tri/eight.off")
-                                       : test::MakeBipyramid(12);
+        engine::Scene const cage = test::LoadAsset("tri/eight.off");
         for (int levels : {3, 4, 5, 6, 7}) irregular.emplace_back(cage, levels);
         for (auto& [scene, levels] : irregular) scene.cage.scheme = Sdc::SCHEME_LOOP;
         MeasureGrowth("Regular triangles (torus)", 10, numRounds, regular);

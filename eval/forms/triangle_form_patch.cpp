@@ -108,7 +108,7 @@ public:
 
     explicit Interpolation(far_ext::Points points) {
         System system;
-        for (Index vertex = 0; vertex < static_cast<Index>(points.size()); ++vertex) {
+        for (Index vertex = 0; vertex < static_cast<Index>(points.GetCount()); ++vertex) {
             double const x = points[vertex].x() - Lattice::kSide / 2,
                          y = points[vertex].y() - Lattice::kSide / 2;
             double const s = x - y, t = y;  // (1,0) is s, (1,1) is t

@@ -46,13 +46,13 @@ struct Keys {
 
 std::set<std::string> FindSections(fs::path const& page) {
     std::set<std::string> numbers;
-    ForEachMatch(ReadText(page), R"(\n##+ ([0-9]+(\.[0-9]+)?)\.? )",
+    ForEachMatch(test::ReadText(page), R"(\n##+ ([0-9]+(\.[0-9]+)?)\.? )",
                  [&](std::smatch const& heading) { numbers.insert(heading[1]); });
     return numbers;
 }
 
 Keys ReadKeys() {
-    std::string const text = ReadText(kRoot / "docs/papers.md");
+    std::string const text = test::ReadText(kRoot / "docs/papers.md");
     Keys keys;
     ForEachMatch(text, R"(\n\| \[([A-Z][A-Za-z]*[0-9]{2}|Pixar)\] \|)",
                  [&](std::smatch const& row) { keys.papers.insert(row[1]); });
@@ -96,7 +96,7 @@ TEST(Citations, AreOfKeysThatPapersListsAndOfSectionsThatExist) {
     auto files = ListSources();
     files.merge(ListDocuments());
     for (fs::path const& file : files) {
-        auto const wrong = FindWrongCitations(JoinComments(ReadText(file)), keys);
+        auto const wrong = FindWrongCitations(JoinComments(test::ReadText(file)), keys);
         EXPECT_TRUE(wrong.empty()) << file << " cites " << (wrong.empty() ? "" : wrong[0]);
     }
 }
@@ -112,17 +112,18 @@ TEST(Citations, OfUnknownKeysAndMissingSectionsAreFoundAlsoWhereALineBreaksThem)
 
 TEST(Citations, OfDocumentsAreOfDocumentsInTheRepository) {
     for (fs::path const& file : ListSources()) {
-        ForEachMatch(ReadText(file), R"([A-Za-z0-9_/-]+\.md\b)", [&](std::smatch const& name) {
-            bool const exists =
-                fs::exists(kRoot / name.str()) || fs::exists(kRoot / "docs" / name.str());
-            EXPECT_TRUE(exists) << file << " names " << name.str();
-        });
+        ForEachMatch(
+            test::ReadText(file), R"([A-Za-z0-9_/-]+\.md\b)", [&](std::smatch const& name) {
+                bool const exists =
+                    fs::exists(kRoot / name.str()) || fs::exists(kRoot / "docs" / name.str());
+                EXPECT_TRUE(exists) << file << " names " << name.str();
+            });
     }
 }
 
 TEST(Documents, NameUnitsThatExist) {
     for (fs::path const& document : ListDocuments()) {
-        ForEachMatch(ReadText(document),
+        ForEachMatch(test::ReadText(document),
                      R"(`((far_ext|eval|engine|tests|bench)/[a-z0-9_/]+(\.[a-z]+)?)`)",
                      [&](std::smatch const& unit) {
                          EXPECT_TRUE(IsUnit(unit[1])) << document << " names " << unit[1];
@@ -132,7 +133,7 @@ TEST(Documents, NameUnitsThatExist) {
 
 TEST(TheoryPages, SayInEachSectionWhichCodeStandsOnIt) {
     for (fs::path const& page : ListFiles({"docs/theory"}, {".md"})) {
-        std::string const text = ReadText(page);
+        std::string const text = test::ReadText(page);
         ForEachMatch(text, R"(\n## ([^\n]+)\n)", [&](std::smatch const& heading) {
             size_t const begin = static_cast<size_t>(heading.position(0)) + 1;
             std::string const section = text.substr(begin, text.find("\n## ", begin) - begin);

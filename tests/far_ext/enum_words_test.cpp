@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/files.h"
+#include "support/errors.h"
 
 namespace limn {
 namespace {

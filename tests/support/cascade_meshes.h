@@ -1,109 +1,59 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <list>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <Eigen/Geometry>
+#include <Eigen/Core>
 
 #include "eval/cascade/cascade.h"
-#include "far_ext/cascade/bisection.h"
 #include "far_ext/cascade/cascade_level.h"
 #include "support/refined.h"
 
 namespace limn::test {
 
 /// A mesh of tests/data/cascade, as triangles.
-inline engine::Scene LoadMesh(std::string const& name) {
-    engine::Scene scene = LoadData("cascade/" + name + ".obj");
-    scene.cage.scheme = Sdc::SCHEME_LOOP;
-    return scene;
-}
+engine::Scene LoadMesh(std::string const& name);
+
+/// Whether all faces at each vertex are one fan.
+bool IsManifold(engine::Scene const& scene);
+
+/// Meshes with names: made ones of valence 2 to 12, open and closed, n-gons, creases of any
+/// sharpness, several components, genus 0 to 2; and those of Pixar's cages that are manifolds.
+std::vector<std::pair<std::string, engine::Scene>> const& GetCascadeMeshes();
+
+/// Points of a finer mesh: each the mean of its parents.
+std::vector<double> ApplyParents(std::vector<int> const& offsets, std::vector<Index> const& parents,
+                                 std::vector<double> const& coarse);
 
 struct EdgeLengths {
     double mean = 0.0;
     std::vector<double> atVertices;  ///< mean of those at each vertex
 };
 
-inline EdgeLengths MeasureEdges(engine::Scene const& scene) {
-    auto const refiner = MakeRefiner(scene, 0);
-    auto const level = refiner->GetLevel(0);
-    EdgeLengths lengths;
-    std::vector<double> counts(static_cast<size_t>(level.GetNumVertices()), 0.0);
-    lengths.atVertices.assign(counts.size(), 0.0);
-    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
-        auto const ends = level.GetEdgeVertices(edge);
-        double const* const p = &scene.positions[3 * static_cast<size_t>(ends[0])];
-        double const* const q = &scene.positions[3 * static_cast<size_t>(ends[1])];
-        double const length = std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
-        lengths.mean += length / level.GetNumEdges();
-        for (Index end : {ends[0], ends[1]}) {
-            lengths.atVertices[static_cast<size_t>(end)] += length;
-            counts[static_cast<size_t>(end)] += 1.0;
-        }
-    }
-    for (size_t i = 0; i < counts.size(); ++i) lengths.atVertices[i] /= counts[i];
-    return lengths;
-}
+EdgeLengths MeasureEdges(engine::Scene const& scene);
 
 /// Levels 1 to `count` of a scene's own refinement.
-inline std::list<far_ext::CascadeLevel> QuarterLevels(engine::Scene const& scene, int count,
-                                                      far_ext::BoundaryRule rule) {
-    auto const refiner = MakeRefiner(scene, count);
-    std::list<far_ext::CascadeLevel> levels;
-    for (int k = 1; k <= count; ++k) {
-        std::vector<Index> const coarse = k == 1 ? std::vector<Index>{} : levels.back().vertices;
-        levels.push_back(
-            far_ext::BuildCascadeLevel(far_ext::MakeCascadeMesh(*refiner, k), coarse, rule));
-    }
-    return levels;
-}
+std::list<far_ext::CascadeLevel> QuarterLevels(engine::Scene const& scene, int count,
+                                               far_ext::BoundaryRule rule);
 
 /// Levels after 1 to `count` passes of bisection.
-inline std::list<far_ext::CascadeLevel> BisectLevels(engine::Scene const& scene, int count,
-                                                     far_ext::BoundaryRule rule) {
-    far_ext::Bisection bisection(scene.cage.numVertices, scene.cage.faceVertices, scene.positions,
-                                 {}, {});
-    std::list<far_ext::CascadeLevel> levels;
-    for (int k = 1; k <= count; ++k) {
-        std::vector<Index> const coarse = k == 1 ? std::vector<Index>{} : levels.back().vertices;
-        levels.push_back(far_ext::BuildCascadeLevel(bisection.Refine(), coarse, rule));
-    }
-    return levels;
-}
+std::list<far_ext::CascadeLevel> BisectLevels(engine::Scene const& scene, int count,
+                                              far_ext::BoundaryRule rule);
 
 /// Positions after a step on each level; Jacobi sweeps and untolerant conjugate gradients by the
 /// a-priori rule.
-inline std::vector<double> Filter(engine::Scene const& scene,
-                                  std::list<far_ext::CascadeLevel> const& levels,
-                                  eval::CascadeOptions const& options,
-                                  std::vector<double> const& widths = {}, int finestSweeps = 1) {
-    eval::Cascade<double> cascade(scene.positions, widths, options);
-    int left = static_cast<int>(levels.size());
-    for (far_ext::CascadeLevel const& level : levels) {
-        cascade.Step(level, eval::CountSweeps(options.solver, finestSweeps, --left, false));
-    }
-    return cascade.GetPositions();
-}
+std::vector<double> Filter(engine::Scene const& scene,
+                           std::list<far_ext::CascadeLevel> const& levels,
+                           eval::CascadeOptions const& options,
+                           std::vector<double> const& widths = {}, int finestSweeps = 1);
 
 /// A mesh as it is, without refinement: each vertex is its own parent. Faces of 3 or 4 corners, all
 /// alike.
-inline far_ext::CascadeMesh MakeSameMesh(engine::Scene const& scene) {
-    far_ext::CascadeMesh mesh;
-    mesh.numVertices = scene.cage.numVertices;
-    mesh.faceSize = scene.cage.faceSizes.empty() ? 3 : scene.cage.faceSizes.front();
-    mesh.faces = scene.cage.faceVertices;
-    for (Index i = 0; i < mesh.numVertices; ++i) {
-        mesh.parents.push_back(i);
-        mesh.parentOffsets.push_back(i + 1);
-    }
-    return mesh;
-}
+far_ext::CascadeMesh MakeSameMesh(engine::Scene const& scene);
 
 inline Eigen::Vector3d PointAt(std::vector<double> const& points, Index vertex) {
     return Eigen::Map<Eigen::Vector3d const>(&points[3 * static_cast<size_t>(vertex)]);
@@ -118,37 +68,12 @@ inline std::vector<std::pair<eval::CascadeSolver, double>> const kSolvers{
     {eval::CascadeSolver::ConjugateGradients, 1e-6},
     {eval::CascadeSolver::Jacobi, 0.0}};
 
-inline std::vector<double> Transform(std::vector<double> points, Eigen::Matrix3d const& matrix,
-                                     Eigen::Vector3d const& shift) {
-    for (size_t i = 0; i < points.size(); i += 3) {
-        Eigen::Map<Eigen::Vector3d> point(&points[i]);
-        point = (matrix * point + shift).eval();
-    }
-    return points;
-}
+std::vector<double> Transform(std::vector<double> points, Eigen::Matrix3d const& matrix,
+                              Eigen::Vector3d const& shift);
 
 /// The least angle of a mesh of triangles.
-inline double MinAngleDegrees(std::vector<double> const& points, far_ext::CascadeMesh const& mesh) {
-    double least = kPi;
-    for (size_t corner = 0; corner < mesh.faces.size(); ++corner) {
-        size_t const face = corner / 3 * 3, k = corner - face;
-        Eigen::Vector3d const at = PointAt(points, mesh.faces[corner]);
-        Eigen::Vector3d const a = PointAt(points, mesh.faces[face + (k + 1) % 3]) - at,
-                              b = PointAt(points, mesh.faces[face + (k + 2) % 3]) - at;
-        least = std::min(least, std::atan2(a.cross(b).norm(), a.dot(b)));
-    }
-    return least * 180 / kPi;
-}
+double MinAngleDegrees(std::vector<double> const& points, far_ext::CascadeMesh const& mesh);
 
-inline bool AreFinite(std::vector<double> const& points) {
-    return std::all_of(points.begin(), points.end(), [](double x) { return std::isfinite(x); });
-}
-
-inline double MeanRadius(std::vector<double> const& points) {
-    double sum = 0.0;
-    for (size_t i = 0; i < points.size(); i += 3)
-        sum += std::hypot(points[i], points[i + 1], points[i + 2]);
-    return 3.0 * sum / static_cast<double>(points.size());
-}
+double MeanRadius(std::vector<double> const& points);
 
 }  // namespace limn::test

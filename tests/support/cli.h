@@ -19,13 +19,17 @@ using nlohmann::json;
 using test::Outcome;
 using Words = std::vector<std::string>;
 
+inline Words operator+(Words a, Words const& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
 inline std::string Shape(std::string const& name) {
     return test::DataPath("opensubdiv_shapes/" + name + ".obj");
 }
 
-inline Outcome Limn(Words arguments, test::RunOptions const& options = {}) {
-    arguments.insert(arguments.begin(), LIMN_PROGRAM);
-    return test::Process(arguments, options).Wait();
+inline Outcome Limn(Words const& arguments, test::RunOptions const& options = {}) {
+    return test::Process(Words{LIMN_PROGRAM} + arguments, options).Wait();
 }
 
 inline std::vector<std::string> Lines(std::string const& text) {
@@ -35,9 +39,23 @@ inline std::vector<std::string> Lines(std::string const& text) {
     return lines;
 }
 
-/// The error line; the test fails unless there is exactly one, the last of stderr, and the status
-/// fits.
-inline std::string ExpectError(Outcome const& outcome, int status) {
+inline bool Contains(std::string const& text, std::string const& part) {
+    return text.find(part) != std::string::npos;
+}
+
+/// The verbs that limn's own help lists.
+inline Words ListVerbs() {
+    Words verbs;
+    auto const lines = Lines(Limn({"--help"}).out);
+    auto line = std::find(lines.begin(), lines.end(), "Subcommands:");
+    while (line != lines.end() && ++line != lines.end() && line->starts_with("  "))
+        verbs.push_back(line->substr(2, line->find(' ', 2) - 2));
+    return verbs;
+}
+
+/// The error line; the test fails unless there is exactly one, the last of stderr, it says `part`,
+/// and the status fits.
+inline std::string ExpectError(Outcome const& outcome, int status, std::string const& part) {
     EXPECT_EQ(outcome.status, status) << outcome.err;
     auto const lines = Lines(outcome.err);
     auto const isError = [](std::string const& line) { return line.starts_with("limn: error: "); };
@@ -46,15 +64,34 @@ inline std::string ExpectError(Outcome const& outcome, int status) {
         ADD_FAILURE() << "stderr does not end with an error line: " << outcome.err;
         return {};
     }
+    EXPECT_FALSE(part.empty()) << "any error would do";
+    EXPECT_TRUE(Contains(lines.back(), part)) << "no '" << part << "' in: " << lines.back();
     return lines.back();
-}
-
-inline bool Contains(std::string const& text, std::string const& part) {
-    return text.find(part) != std::string::npos;
 }
 
 inline json ReadJson(std::string const& path) {
     return json::parse(test::ReadText(path));
 }
+
+/// A test of the command line with a folder of its own.
+class Cli : public testing::Test {
+protected:
+    test::TemporaryFolder folder;
+
+    /// What --report wrote to r.json.
+    json Report() const { return ReadJson(folder / "r.json"); }
+
+    /// A small bake of the mean curvature, unless further words say otherwise.
+    Outcome Bake(std::string const& mesh, std::string const& output, Words const& more = {},
+                 test::RunOptions const& options = {}) const {
+        Words words = Words{"bake", mesh, "-o", folder / output, "--quiet"} + more;
+        auto const has = [&](char const* option) {
+            return std::find(more.begin(), more.end(), option) != more.end();
+        };
+        if (!has("--size")) words = words + Words{"--size", "64"};
+        if (!has("--maps")) words = words + Words{"--maps", "mean"};
+        return Limn(words, options);
+    }
+};
 
 }  // namespace limn::test::cli

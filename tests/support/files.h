@@ -6,18 +6,15 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "far_ext/error.h"
-
 namespace limn::test {
 
-inline std::string ReadText(std::string const& path) {
+inline std::string ReadText(std::filesystem::path const& path) {
     std::ifstream file(path, std::ios::binary);
-    if (!file) throw std::runtime_error("cannot read " + path);
+    if (!file) throw std::runtime_error("cannot read " + path.string());
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
@@ -64,46 +61,5 @@ public:
 private:
     std::string _path;
 };
-
-/// The message of the Error that `act` throws; empty if it throws none.
-template <class Act>
-std::string RefusalOf(Act act) {
-    try {
-        act();
-    } catch (Error const& error) {
-        return error.what();
-    }
-    return {};
-}
-
-/// A text with a few of its bytes overwritten, removed or doubled, the same for the same seed.
-inline std::string Damage(std::string text, unsigned seed) {
-    std::mt19937 random(seed);
-    for (int i = 0; i < 6 && !text.empty(); ++i) {
-        size_t const at = random() % text.size();
-        switch (random() % 4) {
-            case 0:
-                text[at] = static_cast<char>(random());
-                break;
-            case 1:
-                text.erase(at, 1 + random() % 8);
-                break;
-            case 2:
-                text.insert(at, text.substr(random() % text.size(), random() % 16));
-                break;
-            default:
-                text[at] = "0123456789-/. \n"[random() % 15];
-                break;
-        }
-    }
-    return text;
-}
-
-/// Bytes without any meaning, after a beginning that has one.
-inline std::string Garbage(std::string beginning, unsigned seed) {
-    std::mt19937 random(seed);
-    for (int i = 0; i < 2000; ++i) beginning += static_cast<char>(random());
-    return beginning;
-}
 
 }  // namespace limn::test

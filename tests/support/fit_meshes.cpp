@@ -183,6 +183,14 @@ void AddNoise(engine::Scene& scene, double share, unsigned seed) {
     for (double& x : scene.positions) x += normal(random);
 }
 
+std::vector<engine::Scene> MakeNoisyScenes() {
+    std::vector<engine::Scene> scenes{MakeTorus(9, 7), MakeTriangleTorus(8, 6),
+                                      MakeGridWithHole(5, 4), MakeCube(),
+                                      LoadShape("catmark_cubes_semisharp")};
+    for (auto& scene : scenes) AddNoise(scene, 0.1, 2);
+    return scenes;
+}
+
 engine::Scene Join(std::vector<engine::Scene> const& scenes) {
     engine::Scene all = scenes.front();
     for (size_t i = 1; i < scenes.size(); ++i) {

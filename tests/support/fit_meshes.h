@@ -30,6 +30,9 @@ engine::Scene MakeGridWithHole(int n, int m);
 /// Adds Gaussian noise of `share` times the mean edge length.
 void AddNoise(engine::Scene& scene, double share, unsigned seed);
 
+/// Closed and open, regular and creased, quads and triangles, all with noise.
+std::vector<engine::Scene> MakeNoisyScenes();
+
 /// Several scenes in one, side by side.
 engine::Scene Join(std::vector<engine::Scene> const& scenes);
 

@@ -117,6 +117,17 @@ engine::Scene WithScheme(engine::Scene scene, Sdc::SchemeType scheme) {
 
 }  // namespace
 
+std::vector<double> MakeCoordinateForm(Far::TopologyLevel const& level,
+                                       std::vector<double> const& positions, size_t axis) {
+    std::vector<double> form;
+    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+        auto const ends = level.GetEdgeVertices(edge);
+        form.push_back(positions[3 * static_cast<size_t>(std::max(ends[0], ends[1])) + axis] -
+                       positions[3 * static_cast<size_t>(std::min(ends[0], ends[1])) + axis]);
+    }
+    return form;
+}
+
 std::vector<std::pair<std::string, engine::Scene>> MakeFormMeshes() {
     constexpr auto kLoop = Sdc::SCHEME_LOOP;
     constexpr auto kCatmark = Sdc::SCHEME_CATMARK;

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include <opensubdiv/far/topologyLevel.h>
+
 #include "engine/scene/scene.h"
 
 namespace limn::test {
@@ -26,5 +28,9 @@ engine::Scene MakeLattice(int n, int m, Sdc::SchemeType scheme);
 
 /// A dodecahedron of pentagons.
 engine::Scene MakeDodecahedron();
+
+/// d0 of a coordinate: from the lower to the higher end of each edge.
+std::vector<double> MakeCoordinateForm(Far::TopologyLevel const& level,
+                                       std::vector<double> const& positions, size_t axis);
 
 }  // namespace limn::test

@@ -2,11 +2,13 @@
 #include "support/meshes.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <map>
+#include <stdexcept>
 
 #include "engine/io/mesh_reader.h"
 
@@ -17,15 +19,16 @@ namespace fs = std::filesystem;
 std::string DataPath(std::string const& path) {
     return std::string(LIMN_TEST_DATA) + "/" + path;
 }
-std::string AssetPath(std::string const& path) {
-    return std::string(LIMN_ASSETS) + "/" + path;
+
+std::string ScenePath(std::string const& path) {
+    return std::string(LIMN_SOURCE_DIR) + "/scenes/" + path;
 }
 
 engine::Scene LoadData(std::string const& path) {
     return engine::ReadMesh(DataPath(path));
 }
 
-Eigen::MatrixXd LoadGoldenPoints(std::string const& path) {
+std::vector<double> LoadPoints(std::string const& path) {
     std::ifstream file(DataPath(path));
     std::vector<double> values;
     for (std::string word; file >> word;) {
@@ -35,15 +38,36 @@ Eigen::MatrixXd LoadGoldenPoints(std::string const& path) {
         }
         for (int c = 0; c < 3; ++c) file >> values.emplace_back();
     }
-    return Eigen::Map<Eigen::Matrix<double, -1, 3, Eigen::RowMajor> const>(
-        values.data(), static_cast<Eigen::Index>(values.size() / 3), 3);
+    if (values.empty()) throw std::runtime_error("no points in " + path);
+    return values;
+}
+
+engine::Scene LoadShape(std::string const& name) {
+    engine::Scene scene = LoadData("opensubdiv_shapes/" + name + ".obj");
+    scene.cage.scheme = name.starts_with("loop")       ? Sdc::SCHEME_LOOP
+                        : name.starts_with("bilinear") ? Sdc::SCHEME_BILINEAR
+                                                       : Sdc::SCHEME_CATMARK;
+    return scene;
+}
+
+std::string AssetPath(std::string const& path) {
+    std::string const own = DataPath("assets/" + path);
+#ifdef LIMN_ASSETS
+    if (!fs::exists(own)) return std::string(LIMN_ASSETS) + "/" + path;
+#endif
+    return own;
 }
 
 bool HasAsset(std::string const& path) {
     return fs::exists(AssetPath(path));
 }
+
 engine::Scene LoadAsset(std::string const& path) {
     return engine::ReadMesh(AssetPath(path));
+}
+
+engine::Scene LoadSpot() {
+    return engine::ReadMesh(ScenePath("spot/spot.obj"));
 }
 
 std::vector<std::string> ListData(std::string const& folder) {
@@ -53,6 +77,20 @@ std::vector<std::string> ListData(std::string const& folder) {
     }
     std::sort(names.begin(), names.end());
     return names;
+}
+
+std::vector<std::string> ListShapes() {
+    auto names = ListData("opensubdiv_shapes");
+    for (std::string& name : names) name = fs::path(name).stem();
+    return names;
+}
+
+std::string NameInstance(std::string const& path) {
+    std::string name = fs::path(path).stem();
+    for (char& c : name) {
+        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+    }
+    return name;
 }
 
 engine::Scene MakeScene(std::vector<double> positions, std::vector<std::vector<Index>> const& faces,

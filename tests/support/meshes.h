@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "engine/scene/scene.h"
 
 namespace limn::test {
@@ -13,16 +11,23 @@ namespace limn::test {
 /// A mesh file of tests/data, by its path there.
 engine::Scene LoadData(std::string const& path);
 
-/// The points of a golden result, whose files have no faces.
-Eigen::MatrixXd LoadGoldenPoints(std::string const& path);
+/// The points of a reference of tests/data, whose files have no faces.
+std::vector<double> LoadPoints(std::string const& path);
 
-/// A mesh file of the larger assets; the caller skips its test where HasAsset is false.
-bool HasAsset(std::string const& path);
+/// A cage of tests/data/opensubdiv_shapes, under the scheme that its name begins with.
+engine::Scene LoadShape(std::string const& name);
+
+/// A mesh of tests/data/assets, by its path there; with LIMN_ASSETS, one of the larger ones, too.
 engine::Scene LoadAsset(std::string const& path);
-
-/// Path of a file in tests/data or among the assets.
-std::string DataPath(std::string const& path);
 std::string AssetPath(std::string const& path);
+bool HasAsset(std::string const& path);
+
+/// The Catmull-Clark cage of a cow, from the scenes.
+engine::Scene LoadSpot();
+
+/// Path of a file in tests/data, and in scenes.
+std::string DataPath(std::string const& path);
+std::string ScenePath(std::string const& path);
 
 /// A scene from arrays: `faces` lists each face's vertices.
 engine::Scene MakeScene(std::vector<double> positions, std::vector<std::vector<Index>> const& faces,
@@ -42,5 +47,11 @@ engine::Scene MakeCube();
 
 /// Names of all OBJ files of a folder of tests/data, sorted.
 std::vector<std::string> ListData(std::string const& folder);
+
+/// The names of all cages that LoadShape takes, sorted.
+std::vector<std::string> ListShapes();
+
+/// A file's name as the name of a test's instance: letters, digits and _, without the ending.
+std::string NameInstance(std::string const& path);
 
 }  // namespace limn::test

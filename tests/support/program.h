@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -26,6 +27,7 @@ struct RunOptions {
     std::vector<std::string> environment{};  ///< NAME=VALUE, beside what the test itself has
     std::string folder{};                    ///< to run in; empty for the test's own
     std::string stdoutPath{};                ///< where stdout goes instead of into Outcome::out
+    size_t maxFileBytes = 0;                 ///< no file may become larger; 0: any may
 };
 
 /// A program that runs beside the test. It is killed if the test ends before it.
@@ -45,6 +47,7 @@ public:
         ::dup2(::open(outPath.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);
         ::dup2(::open(errPath.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDERR_FILENO);
         if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) ::_exit(126);
+        if (options.maxFileBytes != 0) LimitFiles(options.maxFileBytes);
         for (std::string const& entry : options.environment) ::putenv(::strdup(entry.c_str()));
         ::execv(arguments[0], arguments.data());
         ::_exit(127);
@@ -72,6 +75,13 @@ public:
     }
 
 private:
+    /// Writing beyond the limit fails as it does on a full disk, rather than killing the program.
+    static void LimitFiles(size_t bytes) {
+        rlimit const limit{bytes, bytes};
+        ::signal(SIGXFSZ, SIG_IGN);
+        if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(126);
+    }
+
     TemporaryFolder _streams;
     pid_t _pid = -1;
 };

@@ -2,21 +2,16 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <string>
 #include <vector>
+
+#include "support/files.h"
 
 namespace limn::test {
 
 /// The repository's own files, for tests of what is written in them.
 inline std::filesystem::path const kSourceRoot = LIMN_SOURCE_DIR;
-
-inline std::string ReadText(std::filesystem::path const& path) {
-    std::ifstream file(path);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
 
 /// All files of the folders with one of the endings, sorted.
 inline std::set<std::filesystem::path> ListFiles(std::vector<std::string> const& folders,

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <memory>
-#include <random>
+#include <string>
 #include <vector>
 
+#include <gtest/gtest.h>
 #include <opensubdiv/far/ptexIndices.h>
 #include <opensubdiv/far/stencilTableFactory.h>
+#include <opensubdiv/osd/bufferDescriptor.h>
 
 #include "far_ext/topology/refiner.h"
+#include "support/values.h"
 
 namespace limn::test {
 
@@ -27,14 +28,15 @@ using FarTable = Far::StencilTableReal<float>;
 using FarLimitTable = Far::LimitStencilTableReal<float>;
 
 /// Far's table of the last level.
-inline std::unique_ptr<FarTable const> MakeFarTable(Far::TopologyRefiner const& refiner,
-                                                    int interpolationMode) {
-    using Factory = Far::StencilTableFactoryReal<float>;
-    Factory::Options options;
+template <class Real = float>
+std::unique_ptr<Far::StencilTableReal<Real> const> MakeFarTable(Far::TopologyRefiner const& refiner,
+                                                                int interpolationMode) {
+    using Factory = Far::StencilTableFactoryReal<Real>;
+    typename Factory::Options options;
     options.interpolationMode = static_cast<unsigned>(interpolationMode) & 3u;
     options.generateIntermediateLevels = false;
     options.generateOffsets = true;
-    return std::unique_ptr<FarTable const>(Factory::Create(refiner, options));
+    return std::unique_ptr<Far::StencilTableReal<Real> const>(Factory::Create(refiner, options));
 }
 
 /// Far's limit stencils with second derivatives at the same grid of places in every face.
@@ -60,21 +62,33 @@ inline std::unique_ptr<FarLimitTable const> MakeFarLimitTable(Far::TopologyRefin
         Factory::Create(refiner, places, nullptr, nullptr, options));
 }
 
-inline std::vector<float> MakeRandomValues(size_t count, unsigned seed) {
-    std::mt19937 random(seed);
-    std::vector<float> values(count);
-    for (float& value : values) value = static_cast<float>(random()) * 0x1p-31f - 1.0f;
-    return values;
+/// Six weight sets through any evaluator that mirrors OpenSubdiv's raw form.
+template <class Evaluator>
+std::vector<float> EvaluateSets(FarLimitTable const& table, std::vector<float> const& source) {
+    size_t const size = static_cast<size_t>(table.GetNumStencils()) * 3;
+    std::vector<float> out(6 * size);
+    float* const to = out.data();
+    OpenSubdiv::Osd::BufferDescriptor const three(0, 3, 3);
+    Evaluator::EvalStencils(
+        source.data(), three, to, three, to + size, three, to + 2 * size, three, to + 3 * size,
+        three, to + 4 * size, three, to + 5 * size, three, table.GetSizes().data(),
+        table.GetOffsets().data(), table.GetControlIndices().data(), table.GetWeights().data(),
+        table.GetDuWeights().data(), table.GetDvWeights().data(), table.GetDuuWeights().data(),
+        table.GetDuvWeights().data(), table.GetDvvWeights().data(), 0, table.GetNumStencils());
+    return out;
 }
 
-/// Largest difference over the largest value.
-inline double RelativeDifference(std::vector<float> const& a, std::vector<float> const& b) {
-    double largest = 0.0, difference = a.size() == b.size() ? 0.0 : 1.0;
-    for (size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-        largest = std::max(largest, std::abs(static_cast<double>(b[i])));
-        difference = std::max(difference, std::abs(static_cast<double>(a[i]) - b[i]));
+/// Set by set: each against its own largest value.
+inline void ExpectNearBySets(std::vector<float> const& ours, std::vector<float> const& theirs,
+                             std::string const& name) {
+    size_t const size = ours.size() / 6;
+    for (size_t set = 0; set < 6; ++set) {
+        auto const part = [&](std::vector<float> const& all) {
+            return std::vector<float>(all.begin() + set * size, all.begin() + (set + 1) * size);
+        };
+        EXPECT_LT(RelativeDifference(part(ours), part(theirs)), 1e-6)
+            << name << ", weight set " << set;
     }
-    return largest > 0.0 ? difference / largest : difference;
 }
 
 }  // namespace limn::test

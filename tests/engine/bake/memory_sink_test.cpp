@@ -27,7 +27,7 @@ engine::BakeOptions MakeOptions() {
 // Files and memory go the same road: the same texels, padding and coverage.
 TEST(BakeToMemory, HoldsWhatTheFilesHold) {
     test::TemporaryFolder const folder;
-    auto const model = engine::Model::Build(test::LoadData("../../scenes/spot/spot.obj"));
+    auto const model = engine::Model::Build(test::LoadSpot());
     engine::Job job;
     auto options = MakeOptions();
     auto const baked = engine::BakeToMemory(model, options, job);

@@ -10,8 +10,8 @@
 
 #include "engine/io/mesh_reader.h"
 #include "engine/io/mesh_writer.h"
-#include "far_ext/error.h"
 #include "far_ext/topology/refiner.h"
+#include "support/errors.h"
 #include "support/files.h"
 #include "support/meshes.h"
 
@@ -26,7 +26,7 @@ protected:
     static constexpr int kNumFrames = 12;
 
     void SetUp() override {
-        mesh = test::LoadData("opensubdiv_shapes/catmark_tent_creases0.obj");
+        mesh = test::LoadShape("catmark_tent_creases0");
         refiner = far_ext::CreateRefiner(mesh.cage);
         fs::create_directory(folder / "in");
         for (int frame = 1; frame <= kNumFrames; ++frame) WriteFrame(InputPath(frame), Bend(frame));
@@ -139,17 +139,14 @@ TEST_F(Frames, EvaluatorsInFloatAgreeOnPositions) {
     }
 }
 
-/// The error's words; no output may be left.
+/// The words of an error of the given code, which there must be.
 template <class Work>
 std::string ErrorOf(ErrorCode code, Work const& work) {
-    try {
-        work();
-    } catch (Error const& error) {
-        EXPECT_EQ(error.GetCode(), code);
-        return error.what();
-    }
-    ADD_FAILURE() << "no error";
-    return {};
+    auto const error = test::CatchError(work);
+    EXPECT_TRUE(error) << "no error";
+    if (!error) return {};
+    EXPECT_EQ(error->GetCode(), code);
+    return error->what();
 }
 
 TEST_F(Frames, AnotherTopologyIsNamedAndNothingIsWritten) {

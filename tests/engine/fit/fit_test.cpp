@@ -7,9 +7,9 @@
 
 #include "eval/surface/vertex_limits.h"
 #include "far_ext/topology/refiner.h"
-#include "support/files.h"
 #include "support/fit_meshes.h"
 #include "support/meshes.h"
+#include "support/values.h"
 
 namespace limn {
 namespace {
@@ -25,7 +25,7 @@ double FindMiss(engine::Scene const& mesh, std::vector<double> const& data) {
     auto const limits = eval::EvaluateVertexLimits(surface, mesh.positions, 3);
     double miss = 0.0;
     for (size_t i = 0; i < data.size(); ++i)
-        miss = std::max(miss, std::abs(limits.values[i] - data[i]));
+        miss = test::Worse(miss, std::abs(limits.values[i] - data[i]));
     return miss / eval::FindSize(data, 3);
 }
 
@@ -35,12 +35,11 @@ std::vector<engine::Scene> MakeScenes() {
          {"catmark_bishop", "catmark_nonquads", "catmark_pyramid_creases0", "catmark_dart_edgeonly",
           "catmark_cubes_semisharp", "catmark_torus_creases0", "catmark_edgeonly",
           "catmark_hole_test1", "catmark_smoothtris0", "catmark_toroidal_tet"}) {
-        scenes.push_back(test::LoadData(std::string("opensubdiv_shapes/") + name + ".obj"));
+        scenes.push_back(test::LoadShape(name));
     }
     for (char const* name :
          {"loop_cubes_semisharp", "loop_saddle_edgecorner", "loop_pole8", "loop_chaikin0"}) {
-        scenes.push_back(test::LoadData(std::string("opensubdiv_shapes/") + name + ".obj"));
-        scenes.back().cage.scheme = Sdc::SCHEME_LOOP;
+        scenes.push_back(test::LoadShape(name));
     }
     scenes.push_back(test::MakeGridWithHole(7, 6));
     scenes.push_back(
@@ -62,7 +61,7 @@ TEST(Fit, TheLimitPassesThroughTheVertices) {
 }
 
 TEST(Fit, FindsTheControlMeshThatMadeTheData) {
-    engine::Scene const control = test::LoadData("opensubdiv_shapes/catmark_bishop.obj");
+    engine::Scene const control = test::LoadShape("catmark_bishop");
     auto const refiner = far_ext::CreateRefiner(control.cage);
     eval::LimitSurface const surface(*refiner);
     engine::Scene data = control;
@@ -80,7 +79,7 @@ TEST(Fit, AlphaGivesAFinerMeshWhoseLimitPassesThroughTheVertices) {
     scene.positions[0] += 0.1;
     scene.positions[1] += 0.2;
     for (engine::Scene const& data : {scene, test::MakePrism(6), test::MakeGridWithHole(5, 5),
-                                      test::LoadData("opensubdiv_shapes/catmark_nonquads.obj")}) {
+                                      test::LoadShape("catmark_nonquads")}) {
         for (double alpha : {0.5, 1.0}) {
             auto const result = FitToLimit(data, {.tolerance = 1e-10, .alpha = alpha});
             EXPECT_TRUE(result.HasConverged());
@@ -129,26 +128,27 @@ TEST(Fit, ASingularComponentOffTheRangeDoesNotConvergeAndKeepsItsDefect) {
     EXPECT_NEAR(result.certificate.max, result.report.residual, 1e-7);
 }
 
-TEST(Fit, AssetsAreFittedWithACertificate) {
-    struct Asset {
-        char const* path;
-        Sdc::SchemeType scheme;
-    };
-    for (Asset const& asset : {Asset{"control/spot_control_mesh.obj", Sdc::SCHEME_CATMARK},
-                               {"control/penguin_control_mesh.obj", Sdc::SCHEME_CATMARK},
-                               {"control/ict_head_skin.obj", Sdc::SCHEME_CATMARK},
-                               {"control/fancy_teapot.obj", Sdc::SCHEME_CATMARK},
-                               {"tri/mechpart_loop_control.obj", Sdc::SCHEME_LOOP},
-                               {"tri/kitten.obj", Sdc::SCHEME_LOOP}}) {
-        if (!test::HasAsset(asset.path)) continue;
-        SCOPED_TRACE(asset.path);
-        engine::Scene scene = test::LoadAsset(asset.path);
-        scene.cage.scheme = asset.scheme;
-        auto const result = FitToLimit(scene, {.tolerance = 1e-10});
-        EXPECT_TRUE(result.HasConverged());
-        EXPECT_LE(result.certificate.max, 1.05e-10);
-    }
+class FitOf : public testing::TestWithParam<char const*> {};
+
+TEST_P(FitOf, ConvergesWithACertificate) {
+    std::string const path = GetParam();
+    engine::Scene scene = path == "spot" ? test::LoadSpot() : test::LoadAsset(path);
+    if (path.starts_with("tri/")) scene.cage.scheme = Sdc::SCHEME_LOOP;
+    auto const result = FitToLimit(scene, {.tolerance = 1e-10});
+    EXPECT_TRUE(result.HasConverged());
+    EXPECT_LE(result.certificate.max, 1.05e-10);
 }
+
+INSTANTIATE_TEST_SUITE_P(Assets, FitOf,
+                         testing::Values("spot", "control/penguin_control_mesh.obj",
+                                         "tri/mechpart_loop_control.obj",
+                                         "tri/spot_low_resolution.obj"));
+
+#ifdef LIMN_ASSETS
+INSTANTIATE_TEST_SUITE_P(Larger, FitOf,
+                         testing::Values("control/ict_head_skin.obj", "control/fancy_teapot.obj",
+                                         "tri/kitten.obj"));
+#endif
 
 }  // namespace
 }  // namespace limn

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/images/line_convolution.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -45,9 +46,19 @@ TEST(LineConvolution, StaysInside) {
     isInside[27] = 1;
     auto const grey = engine::ConvolveLines(8, 8, flow, isInside);
     for (size_t i = 0; i < grey.size(); ++i) EXPECT_EQ(grey[i] > 0, i == 27);
-    // A field that vanishes, or is no number, ends streamlines.
-    std::vector<float> const nothing(2 * 8 * 8, std::numeric_limits<float>::quiet_NaN());
-    EXPECT_EQ(engine::ConvolveLines(8, 8, nothing, std::vector<uint8_t>(64, 1)).size(), 64u);
+}
+
+// Where it ends at once, a streamline is its own texel, whose noise is left as it was.
+TEST(LineConvolution, AFieldThatVanishesOrIsNoNumberEndsStreamlines) {
+    std::vector<uint8_t> const inside(64, 1);
+    auto const still = engine::ConvolveLines(8, 8, std::vector<float>(128, 0.0f), inside),
+               none = engine::ConvolveLines(
+                   8, 8, std::vector<float>(128, std::numeric_limits<float>::quiet_NaN()), inside),
+               flowing = engine::ConvolveLines(8, 8, std::vector<float>(128, 1.0f), inside);
+    EXPECT_EQ(still, none);
+    EXPECT_NE(still, flowing);
+    EXPECT_LT(*std::min_element(still.begin(), still.end()),
+              *std::max_element(still.begin(), still.end()));
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <locale>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -13,6 +12,7 @@
 #include "engine/scene/refine.h"
 #include "support/files.h"
 #include "support/meshes.h"
+#include "support/readers.h"
 
 namespace limn {
 namespace {
@@ -96,18 +96,14 @@ TEST_P(WrittenMesh, ReadsBackAsTheSameNumbers) {
 }
 
 TEST_P(WrittenMesh, IsTheSameInEveryLocale) {
-    struct Comma : std::numpunct<char> {
-        char do_decimal_point() const override { return ','; }
-        char do_thousands_sep() const override { return '.'; }
-        std::string do_grouping() const override { return "\3"; }
-    };
     auto const& [ending, isDouble] = GetParam();
     test::TemporaryFolder const folder;
     Scene const scene = MakeAwkward(isDouble);
     engine::WriteMesh(folder / "a" + ending, scene, isDouble, nullptr);
-    std::locale const before = std::locale::global(std::locale(std::locale(), new Comma));
-    engine::WriteMesh(folder / "b" + ending, scene, isDouble, nullptr);
-    std::locale::global(before);
+    {
+        test::CommaLocale const commas;
+        engine::WriteMesh(folder / "b" + ending, scene, isDouble, nullptr);
+    }
     EXPECT_EQ(test::ReadText(folder / "a" + ending), test::ReadText(folder / "b" + ending));
 }
 
@@ -206,7 +202,7 @@ TEST(MeshWriter, ObjKeepsGroups) {
 }
 
 TEST(MeshWriter, ObjKeepsUVSharingAndOrder) {
-    Scene const scene = test::LoadData("opensubdiv_shapes/catmark_cube.obj");
+    Scene const scene = test::LoadShape("catmark_cube");
     Scene const back = RoundTrip(scene, "a.obj", true);
     EXPECT_EQ(back.uvs, scene.uvs);
     EXPECT_EQ(back.cage.fvarChannels.at(0).valueIndices,
@@ -248,13 +244,11 @@ TEST(MeshWriter, WhatAFormatCannotHoldIsSaid) {
 TEST(MeshWriter, OtherEndingsAreRefusedAndLeaveNothing) {
     test::TemporaryFolder const folder;
     for (std::string const name : {"a.stl", "a", "obj", "a.obj.txt"}) {
-        try {
-            engine::WriteMesh(folder / name, test::MakeCube(), false, nullptr);
-            ADD_FAILURE() << name;
-        } catch (Error const& error) {
-            EXPECT_EQ(error.GetCode(), ErrorCode::BadOption);
-            EXPECT_NE(std::string(error.what()).find(".obj or .ply"), std::string::npos);
-        }
+        auto const error = test::CatchError(
+            [&] { engine::WriteMesh(folder / name, test::MakeCube(), false, nullptr); });
+        ASSERT_TRUE(error) << name;
+        EXPECT_EQ(error->GetCode(), ErrorCode::BadOption);
+        EXPECT_NE(std::string(error->what()).find(".obj or .ply"), std::string::npos);
     }
     EXPECT_TRUE(folder.List().empty());
 }
@@ -268,7 +262,7 @@ TEST(MeshWriter, ReplacesAFileWhole) {
 }
 
 TEST(MeshWriter, RefinedMeshReadsBackWithItsTags) {
-    Scene scene = test::LoadData("opensubdiv_shapes/catmark_cube_creases0.obj");
+    Scene scene = test::LoadShape("catmark_cube_creases0");
     Scene const fine = engine::RefineUniformly(scene, 1, false);
     Scene const back = RoundTrip(fine, "a.obj", true);
     ExpectSameBits(fine.positions, back.positions);

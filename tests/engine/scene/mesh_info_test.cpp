@@ -2,13 +2,12 @@
 #include "engine/scene/mesh_info.h"
 
 #include <cmath>
-#include <filesystem>
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include "far_ext/topology/refiner.h"
 #include "support/meshes.h"
+#include "support/readers.h"
 
 namespace limn {
 namespace {
@@ -48,11 +47,7 @@ void PrintTo(Facts const& facts, std::ostream* out) {
 }
 
 std::string NameOf(testing::TestParamInfo<Facts> const& info) {
-    std::string name = std::filesystem::path(info.param.path).stem().string();
-    for (char& c : name) {
-        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-    }
-    return name;
+    return test::NameInstance(info.param.path);
 }
 
 void ExpectFacts(MeshInfo const& info, Facts const& facts) {
@@ -74,7 +69,7 @@ void ExpectFacts(MeshInfo const& info, Facts const& facts) {
 class InfoOfShape : public testing::TestWithParam<Facts> {};
 
 TEST_P(InfoOfShape, AgreesWithTheTable) {
-    ExpectFacts(Describe(test::LoadData("opensubdiv_shapes/" + GetParam().path)), GetParam());
+    ExpectFacts(Describe(test::LoadShape(GetParam().path)), GetParam());
 }
 
 // catmark_nonman_edges and loop_nonman_edges are left out: how many edges a face with repeated
@@ -83,107 +78,117 @@ INSTANTIATE_TEST_SUITE_P(OpenSubdiv, InfoOfShape,
                          testing::ValuesIn(std::vector<Facts>{
                              // path, vertices, faces, components, loops, genus, valence from, to,
                              // UVs, flipped, zero area
-                             {"bilinear_cube.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
-                             {"bilinear_nonquads0.obj", 8, 2, 2, 2, 0, 2, 2, true, 0, 0},
-                             {"catmark_bishop.obj", 917, 968, 2, 1, 0, 3, 24, true, 0, 0},
-                             {"catmark_car.obj", 1642, 1575, 31, 11, 7, 2, 6, true, 0, 0},
-                             {"catmark_chaikin0.obj", 24, 22, 1, 0, 0, 3, 4, true, 0, 22},
-                             {"catmark_cube.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
-                             {"catmark_cube_corner0.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
-                             {"catmark_cube_corner2.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
-                             {"catmark_cube_corner4.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
-                             {"catmark_cube_creases0.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
-                             {"catmark_cube_creases2.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
-                             {"catmark_cubes_semisharp.obj", 32, 24, 4, 0, 0, 3, 3, true, 0, 0},
-                             {"catmark_dart_edgecorner.obj", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
-                             {"catmark_dart_edgeonly.obj", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
-                             {"catmark_edgecorner.obj", 52, 28, 4, 4, 0, 2, 4, true, 0, 0},
-                             {"catmark_edgenone.obj", 64, 36, 4, 4, 0, 2, 4, true, 0, 0},
-                             {"catmark_edgeonly.obj", 40, 20, 4, 4, 0, 2, 4, true, 0, 0},
-                             {"catmark_fan.obj", 22, 13, 1, 1, -1, 2, 6, true, 0, 0},
-                             {"catmark_flap.obj", 8, 3, 1, 1, 0, 2, 3, true, 1, 0},
-                             {"catmark_fvar_bound0.obj", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
-                             {"catmark_fvar_bound2.obj", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
-                             {"catmark_fvar_bound4.obj", 9, 4, 1, 1, 0, 2, 4, true, 0, 0},
-                             {"catmark_gregory_test0.obj", 7, 3, 1, 1, 0, 2, 3, true, 0, 0},
-                             {"catmark_gregory_test2.obj", 9, 4, 1, 1, 0, 2, 5, true, 0, 0},
-                             {"catmark_gregory_test4.obj", 12, 8, 1, 1, -1, 3, 4, true, 0, 0},
-                             {"catmark_gregory_test6.obj", 20, 13, 1, 1, 0, 2, 4, true, 0, 0},
-                             {"catmark_helmet.obj", 72, 58, 1, 1, 0, 2, 4, true, 0, 0},
-                             {"catmark_hole_test1.obj", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
-                             {"catmark_hole_test3.obj", 24, 16, 1, 1, 0, 2, 5, true, 0, 0},
-                             {"catmark_inf_crease0.obj", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
-                             {"catmark_lefthanded.obj", 436, 434, 1, 0, 0, 3, 5, true, 125, 184},
-                             {"catmark_nonman_verts.obj", 49, 20, 4, 6, -1, 2, 8, true, 0, 0},
-                             {"catmark_nonquads.obj", 33, 17, 4, 4, 0, 2, 4, true, 0, 0},
-                             {"catmark_pole64.obj", 129, 128, 1, 1, 0, 3, 64, false, 0, 0},
-                             {"catmark_pole8.obj", 17, 16, 1, 1, 0, 3, 8, false, 0, 0},
-                             {"catmark_pyramid.obj", 5, 5, 1, 0, 0, 3, 4, true, 5, 0},
-                             {"catmark_pyramid_creases0.obj", 5, 5, 1, 0, 0, 3, 4, true, 1, 0},
-                             {"catmark_quadstrips.obj", 126, 52, 11, 11, 0, 2, 4, true, 0, 0},
-                             {"catmark_righthanded.obj", 436, 434, 1, 0, 0, 3, 5, true, 125, 184},
-                             {"catmark_smoothtris0.obj", 42, 80, 1, 0, 0, 5, 20, true, 0, 0},
-                             {"catmark_square_hedit0.obj", 16, 9, 1, 1, 0, 2, 4, true, 0, 0},
-                             {"catmark_tent.obj", 16, 9, 1, 1, 0, 2, 4, true, 0, 0},
-                             {"catmark_tent_creases0.obj", 16, 9, 1, 1, 0, 2, 4, true, 0, 0},
-                             {"catmark_toroidal_tet.obj", 20, 24, 1, 0, 3, 4, 6, true, 0, 0},
-                             {"catmark_torus.obj", 32, 32, 1, 0, 1, 4, 4, true, 0, 0},
-                             {"catmark_torus_creases0.obj", 32, 32, 1, 0, 1, 4, 4, true, 0, 0},
-                             {"catmark_val2_interior.obj", 103, 56, 9, 8, 0, 2, 6, true, 0, 1},
-                             {"catmark_xord_interior.obj", 151, 71, 9, 9, 0, 2, 12, true, 0, 0},
-                             {"loop_chaikin0.obj", 24, 44, 1, 0, 0, 4, 6, true, 0, 44},
-                             {"loop_cube.obj", 14, 24, 1, 0, 0, 4, 6, true, 0, 0},
-                             {"loop_cube_creases0.obj", 8, 12, 1, 0, 0, 4, 5, true, 0, 0},
-                             {"loop_cubes_semisharp.obj", 56, 96, 4, 0, 0, 4, 6, true, 0, 0},
-                             {"loop_fvar_bound0.obj", 19, 24, 1, 1, 0, 3, 6, true, 0, 0},
-                             {"loop_fvar_bound2.obj", 19, 24, 1, 1, 0, 3, 6, true, 0, 0},
-                             {"loop_icosahedron.obj", 12, 20, 1, 0, 0, 5, 5, true, 0, 0},
-                             {"loop_pole8.obj", 17, 24, 1, 1, 0, 4, 8, false, 0, 0},
-                             {"loop_saddle_edgecorner.obj", 6, 4, 1, 1, 0, 2, 4, true, 0, 0},
-                             {"loop_tetrahedron.obj", 4, 4, 1, 0, 0, 3, 3, true, 0, 0},
-                             {"loop_toroidal_tet.obj", 32, 72, 1, 0, 3, 6, 8, true, 0, 0},
-                             {"loop_triangle_edgeonly.obj", 36, 34, 4, 4, 0, 2, 6, true, 0, 0},
-                             {"loop_val2_interior.obj", 15, 10, 3, 2, -1, 2, 6, true, 0, 0},
-                             {"loop_xord_interior.obj", 78, 69, 9, 9, 0, 3, 12, true, 0, 0}}),
-                         [](auto const& instance) { return NameOf(instance); });
+                             {"bilinear_cube", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"bilinear_nonquads0", 8, 2, 2, 2, 0, 2, 2, true, 0, 0},
+                             {"catmark_bishop", 917, 968, 2, 1, 0, 3, 24, true, 0, 0},
+                             {"catmark_car", 1642, 1575, 31, 11, 7, 2, 6, true, 0, 0},
+                             {"catmark_chaikin0", 24, 22, 1, 0, 0, 3, 4, true, 0, 22},
+                             {"catmark_cube", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"catmark_cube_corner0", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"catmark_cube_corner2", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"catmark_cube_corner4", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"catmark_cube_creases0", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"catmark_cube_creases2", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"catmark_cubes_semisharp", 32, 24, 4, 0, 0, 3, 3, true, 0, 0},
+                             {"catmark_dart_edgecorner", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_dart_edgeonly", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_edgecorner", 52, 28, 4, 4, 0, 2, 4, true, 0, 0},
+                             {"catmark_edgenone", 64, 36, 4, 4, 0, 2, 4, true, 0, 0},
+                             {"catmark_edgeonly", 40, 20, 4, 4, 0, 2, 4, true, 0, 0},
+                             {"catmark_fan", 22, 13, 1, 1, -1, 2, 6, true, 0, 0},
+                             {"catmark_flap", 8, 3, 1, 1, 0, 2, 3, true, 1, 0},
+                             {"catmark_fvar_bound0", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_fvar_bound2", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_fvar_bound4", 9, 4, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_gregory_test0", 7, 3, 1, 1, 0, 2, 3, true, 0, 0},
+                             {"catmark_gregory_test2", 9, 4, 1, 1, 0, 2, 5, true, 0, 0},
+                             {"catmark_gregory_test4", 12, 8, 1, 1, -1, 3, 4, true, 0, 0},
+                             {"catmark_gregory_test6", 20, 13, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_helmet", 72, 58, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_hole_test1", 8, 6, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"catmark_hole_test3", 24, 16, 1, 1, 0, 2, 5, true, 0, 0},
+                             {"catmark_inf_crease0", 25, 16, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_lefthanded", 436, 434, 1, 0, 0, 3, 5, true, 125, 184},
+                             {"catmark_nonman_verts", 49, 20, 4, 6, -1, 2, 8, true, 0, 0},
+                             {"catmark_nonquads", 33, 17, 4, 4, 0, 2, 4, true, 0, 0},
+                             {"catmark_pole64", 129, 128, 1, 1, 0, 3, 64, false, 0, 0},
+                             {"catmark_pole8", 17, 16, 1, 1, 0, 3, 8, false, 0, 0},
+                             {"catmark_pyramid", 5, 5, 1, 0, 0, 3, 4, true, 5, 0},
+                             {"catmark_pyramid_creases0", 5, 5, 1, 0, 0, 3, 4, true, 1, 0},
+                             {"catmark_quadstrips", 126, 52, 11, 11, 0, 2, 4, true, 0, 0},
+                             {"catmark_righthanded", 436, 434, 1, 0, 0, 3, 5, true, 125, 184},
+                             {"catmark_smoothtris0", 42, 80, 1, 0, 0, 5, 20, true, 0, 0},
+                             {"catmark_square_hedit0", 16, 9, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_tent", 16, 9, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_tent_creases0", 16, 9, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"catmark_toroidal_tet", 20, 24, 1, 0, 3, 4, 6, true, 0, 0},
+                             {"catmark_torus", 32, 32, 1, 0, 1, 4, 4, true, 0, 0},
+                             {"catmark_torus_creases0", 32, 32, 1, 0, 1, 4, 4, true, 0, 0},
+                             {"catmark_val2_interior", 103, 56, 9, 8, 0, 2, 6, true, 0, 1},
+                             {"catmark_xord_interior", 151, 71, 9, 9, 0, 2, 12, true, 0, 0},
+                             {"loop_chaikin0", 24, 44, 1, 0, 0, 4, 6, true, 0, 44},
+                             {"loop_cube", 14, 24, 1, 0, 0, 4, 6, true, 0, 0},
+                             {"loop_cube_creases0", 8, 12, 1, 0, 0, 4, 5, true, 0, 0},
+                             {"loop_cubes_semisharp", 56, 96, 4, 0, 0, 4, 6, true, 0, 0},
+                             {"loop_fvar_bound0", 19, 24, 1, 1, 0, 3, 6, true, 0, 0},
+                             {"loop_fvar_bound2", 19, 24, 1, 1, 0, 3, 6, true, 0, 0},
+                             {"loop_icosahedron", 12, 20, 1, 0, 0, 5, 5, true, 0, 0},
+                             {"loop_pole8", 17, 24, 1, 1, 0, 4, 8, false, 0, 0},
+                             {"loop_saddle_edgecorner", 6, 4, 1, 1, 0, 2, 4, true, 0, 0},
+                             {"loop_tetrahedron", 4, 4, 1, 0, 0, 3, 3, true, 0, 0},
+                             {"loop_toroidal_tet", 32, 72, 1, 0, 3, 6, 8, true, 0, 0},
+                             {"loop_triangle_edgeonly", 36, 34, 4, 4, 0, 2, 6, true, 0, 0},
+                             {"loop_val2_interior", 15, 10, 3, 2, -1, 2, 6, true, 0, 0},
+                             {"loop_xord_interior", 78, 69, 9, 9, 0, 3, 12, true, 0, 0}}),
+                         NameOf);
 
 class InfoOfAsset : public testing::TestWithParam<Facts> {};
 
 TEST_P(InfoOfAsset, AgreesWithTheTable) {
-    if (!test::HasAsset(GetParam().path)) GTEST_SKIP() << "no " << test::AssetPath(GetParam().path);
     ExpectFacts(Describe(test::LoadAsset(GetParam().path)), GetParam());
 }
 
+// path, vertices, faces, components, loops, genus, valence from, to, UVs, flipped, zero area
 INSTANTIATE_TEST_SUITE_P(
     Public, InfoOfAsset,
     testing::ValuesIn(std::vector<Facts>{
-        // path, vertices, faces, components, loops, genus, valence from, to, UVs, flipped, zero
-        // area
+        {"control/penguin_control_mesh.obj", 201, 221, 1, 0, 0, 3, 8, false, 0, 0},
+        {"control/pyramid_corners.obj", 20, 24, 1, 0, 3, 4, 6, true, 0, 0},
+        {"control/pyramid_edge_creases.obj", 20, 24, 1, 0, 3, 4, 6, true, 0, 0},
+        {"udim/grid_with_udims.obj", 16, 9, 1, 1, 0, 2, 4, true, 0, 0},
+        {"udim/plane_3_udims.obj", 9, 4, 1, 1, 0, 2, 4, true, 0, 0},
+        {"tri/3torus.off", 19, 23, 1, 0, 3, 4, 8, false, 0, 0},
+        {"tri/anchor.off", 519, 1050, 1, 0, 4, 4, 34, false, 0, 0},
+        {"tri/bob_small.ply", 250, 500, 1, 0, 1, 4, 9, false, 0, 0},
+        {"tri/cat_head.obj", 131, 248, 1, 1, 0, 3, 11, false, 0, 0},
+        {"tri/dodecahedron_poly.obj", 20, 12, 1, 0, 0, 3, 3, false, 0, 0},
+        {"tri/eight.off", 315, 634, 1, 0, 2, 4, 9, false, 0, 0},
+        {"tri/elephant-with-holes.off", 2798, 4463, 1, 106, 3, 2, 9, false, 0, 0},
+        {"tri/hourglass_ico.obj", 23, 40, 1, 0, -1, 5, 10, false, 0, 0},
+        {"tri/mechpart_loop_control.obj", 115, 238, 1, 0, 3, 3, 16, false, 0, 0},
+        {"tri/moebius.obj", 280, 224, 1, 1, -1, 3, 4, false, 0, 0},
+        {"tri/pig.off", 468, 891, 1, 7, 0, 3, 9, false, 0, 0},
+        {"tri/spot_low_resolution.obj", 829, 1654, 1, 0, 0, 3, 8, false, 0, 0},
+        {"tri/torus3_genus3.obj", 864, 1728, 3, 0, 3, 6, 6, false, 0, 0},
+        {"tri/torus_quad.off", 25, 25, 1, 0, 1, 4, 4, false, 0, 0}}),
+    NameOf);
+
+#ifdef LIMN_ASSETS
+INSTANTIATE_TEST_SUITE_P(
+    Larger, InfoOfAsset,
+    testing::ValuesIn(std::vector<Facts>{
         {"control/chess_knight.obj", 5596, 5592, 2, 0, 0, 3, 8, true, 0, 864},
         {"control/chess_rook.obj", 15270, 15264, 5, 0, 2, 3, 12, true, 0, 0},
         {"control/fancy_teapot.obj", 6072, 6120, 2, 0, 2, 3, 32, true, 0, 0},
         {"control/ict_face_neutral.obj", 26719, 26384, 56, 23, 0, 2, 32, true, 3099, 0},
         {"control/ict_head_skin.obj", 11248, 11144, 1, 4, 0, 3, 5, true, 0, 0},
-        {"control/penguin_control_mesh.obj", 201, 221, 1, 0, 0, 3, 8, false, 0, 0},
         {"control/pixar_bottom_panel_creases.obj", 436, 434, 1, 0, 0, 3, 5, true, 127, 180},
-        {"control/pyramid_corners.obj", 20, 24, 1, 0, 3, 4, 6, true, 0, 0},
-        {"control/pyramid_edge_creases.obj", 20, 24, 1, 0, 3, 4, 6, true, 0, 0},
         {"control/shaderball_surface.obj", 5914, 5838, 38, 0, 0, 3, 12, true, 0, 3456},
-        {"control/spot_control_mesh.obj", 188, 180, 1, 0, 0, 3, 6, true, 5, 0},
         {"control/spot_quadrangulated.obj", 2930, 2928, 1, 0, 0, 3, 6, true, 88, 0},
-        {"udim/grid_with_udims.obj", 16, 9, 1, 1, 0, 2, 4, true, 0, 0},
-        {"udim/plane_3_udims.obj", 9, 4, 1, 1, 0, 2, 4, true, 0, 0},
-        {"tri/3torus.off", 19, 23, 1, 0, 3, 4, 8, false, 0, 0},
-        {"tri/anchor.off", 519, 1050, 1, 0, 4, 4, 34, false, 0, 0},
         {"tri/blobby_3cc.off", 1820, 3417, 3, 4, 0, 2, 9, false, 0, 0},
-        {"tri/bob_small.ply", 250, 500, 1, 0, 1, 4, 9, false, 0, 0},
         {"tri/cactus.off", 620, 1236, 1, 0, 0, 4, 14, false, 0, 0},
-        {"tri/cat_head.obj", 131, 248, 1, 1, 0, 3, 11, false, 0, 0},
         {"tri/cowhead.obj", 4537, 9024, 1, 1, 0, 3, 8, false, 0, 0},
-        {"tri/dodecahedron_poly.obj", 20, 12, 1, 0, 0, 3, 3, false, 0, 0},
         {"tri/double-torus.obj", 3070, 6144, 1, 0, 2, 6, 8, false, 0, 0},
-        {"tri/eight.off", 315, 634, 1, 0, 2, 4, 9, false, 0, 0},
-        {"tri/elephant-with-holes.off", 2798, 4463, 1, 106, 3, 2, 9, false, 0, 0},
         {"tri/elephant.off", 2775, 5558, 1, 0, 3, 4, 9, false, 0, 0},
         {"tri/goathead.obj", 2763, 5522, 1, 0, 0, 4, 8, false, 0, 0},
         {"tri/hand_lowres.obj", 810, 1602, 1, 1, 0, 3, 8, false, 0, 0},
@@ -191,50 +196,40 @@ INSTANTIATE_TEST_SUITE_P(
         {"tri/hemisphere.obj", 2051, 4000, 1, 1, 0, 4, 6, false, 0, 0},
         {"tri/hexaSphere_polygons.obj", 1760, 882, 1, 0, 0, 3, 3, false, 0, 0},
         {"tri/hexagon.obj", 3169, 6144, 1, 1, 0, 3, 6, false, 0, 0},
-        {"tri/hourglass_ico.obj", 23, 40, 1, 0, -1, 5, 10, false, 0, 0},
         {"tri/kitten.obj", 9447, 18894, 1, 0, 1, 5, 8, false, 0, 0},
         {"tri/koala_low_resolution.obj", 3560, 7116, 1, 0, 0, 4, 8, false, 0, 0},
         {"tri/mannequin-devil.off", 12977, 25888, 1, 1, 0, 2, 12, false, 0, 0},
-        {"tri/mechpart_loop_control.obj", 115, 238, 1, 0, 3, 3, 16, false, 0, 0},
-        {"tri/moebius.obj", 280, 224, 1, 1, -1, 3, 4, false, 0, 0},
-        {"tri/pig.off", 468, 891, 1, 7, 0, 3, 9, false, 0, 0},
         {"tri/rotor.off", 600, 1200, 1, 0, 1, 4, 13, false, 0, 0},
         {"tri/soccerball.obj", 28740, 57600, 1, 0, 31, 3, 8, false, 0, 0},
-        {"tri/spot_low_resolution.obj", 829, 1654, 1, 0, 0, 3, 8, false, 0, 0},
-        {"tri/torus.obj", 3840, 7680, 1, 0, 1, 4, 8, false, 0, 0},
-        {"tri/torus3_genus3.obj", 864, 1728, 3, 0, 3, 6, 6, false, 0, 0},
-        {"tri/torus_quad.off", 25, 25, 1, 0, 1, 4, 4, false, 0, 0}}),
-    [](auto const& instance) { return NameOf(instance); });
+        {"tri/torus.obj", 3840, 7680, 1, 0, 1, 4, 8, false, 0, 0}}),
+    NameOf);
+
+TEST(Larger, AFaceIsSpreadOverSevenTilesAndOverlapsWhereItsSkinDoesNot) {
+    auto const face = Describe(test::LoadAsset("control/ict_face_neutral.obj")).uv,
+               skin = Describe(test::LoadAsset("control/ict_head_skin.obj")).uv;
+    EXPECT_EQ(face.tiles, (std::vector<int>{1001, 1002, 1003, 1004, 1005, 1006, 1007}));
+    EXPECT_EQ(skin.tiles, (std::vector<int>{1001, 1002}));
+    EXPECT_GT(face.overlapFaces, 1000u);  // left and right parts share texture space
+    EXPECT_EQ(skin.overlapFaces, 0u);
+}
+#endif
+
+TEST(MeshInfo, SpotAgreesWithTheTable) {
+    ExpectFacts(Describe(test::LoadSpot()), {"spot.obj", 188, 180, 1, 0, 0, 3, 6, true, 5, 0});
+}
 
 TEST(MeshInfo, AssetsHaveTheTilesOfTheTable) {
-    std::vector<std::pair<std::string, std::vector<int>>> const rows = {
-        {"control/ict_head_skin.obj", {1001, 1002}},
-        {"control/ict_face_neutral.obj", {1001, 1002, 1003, 1004, 1005, 1006, 1007}},
-        {"control/pixar_bottom_panel_creases.obj", {1001, 1002, 1011}},
-        {"control/spot_control_mesh.obj", {1001}},
-        {"udim/plane_3_udims.obj", {1001, 1002, 1003}}};
-    for (auto const& [path, tiles] : rows) {
-        if (!test::HasAsset(path)) GTEST_SKIP() << "no " << test::AssetPath(path);
-        EXPECT_EQ(Describe(test::LoadAsset(path)).uv.tiles, tiles) << path;
-    }
+    EXPECT_EQ(Describe(test::LoadShape("catmark_righthanded")).uv.tiles,
+              (std::vector<int>{1001, 1002, 1011}));
+    EXPECT_EQ(Describe(test::LoadSpot()).uv.tiles, (std::vector<int>{1001}));
+    EXPECT_EQ(Describe(test::LoadAsset("udim/plane_3_udims.obj")).uv.tiles,
+              (std::vector<int>{1001, 1002, 1003}));
 }
 
 TEST(MeshInfo, AssetsHaveTheCreasesOfTheTable) {
-    for (auto const& [path, creases] : {std::pair{"tri/mechpart_loop_control.obj", 113u},
-                                        {"control/pixar_bottom_panel_creases.obj", 236u},
-                                        {"control/pyramid_edge_creases.obj", 6u}}) {
-        if (!test::HasAsset(path)) GTEST_SKIP() << "no " << test::AssetPath(path);
-        EXPECT_EQ(Describe(test::LoadAsset(path)).creases, creases) << path;
-    }
-}
-
-TEST(MeshInfo, HeadWithoutOverlapHasNoneAndTheWholeFaceHasSome) {
-    // The skin alone has no overlap; left and right parts of the face share texture space.
-    for (char const* path : {"control/ict_head_skin.obj", "control/ict_face_neutral.obj"}) {
-        if (!test::HasAsset(path)) GTEST_SKIP() << "no " << test::AssetPath(path);
-    }
-    EXPECT_EQ(Describe(test::LoadAsset("control/ict_head_skin.obj")).uv.overlapFaces, 0u);
-    EXPECT_GT(Describe(test::LoadAsset("control/ict_face_neutral.obj")).uv.overlapFaces, 1000u);
+    EXPECT_EQ(Describe(test::LoadAsset("tri/mechpart_loop_control.obj")).creases, 113u);
+    EXPECT_EQ(Describe(test::LoadAsset("control/pyramid_edge_creases.obj")).creases, 6u);
+    EXPECT_EQ(Describe(test::LoadAsset("control/pyramid_corners.obj")).corners, 2u);
 }
 
 // -------- topology of made meshes
@@ -300,7 +295,6 @@ TEST(MeshInfo, BandHasTwoRimsAndAMoebiusBandOne) {
 }
 
 TEST(MeshInfo, MoebiusAssetCannotBeOriented) {
-    if (!test::HasAsset("tri/moebius.obj")) GTEST_SKIP();
     MeshInfo const info = Describe(test::LoadAsset("tri/moebius.obj"));
     EXPECT_EQ(CountDefects(info, "not_orientable"), 4u);  // the table: 4 winding flips
 }
@@ -335,11 +329,8 @@ TEST(MeshInfo, PointWhereTwoSurfacesTouchIsNotManifold) {
 }
 
 TEST(MeshInfo, TablesCountNonManifoldPlaces) {
-    EXPECT_EQ(CountDefects(Describe(test::LoadData("opensubdiv_shapes/catmark_fan.obj")),
-                           "non_manifold_edge"),
-              4u);
-    MeshInfo const vertices =
-        Describe(test::LoadData("opensubdiv_shapes/catmark_nonman_verts.obj"));
+    EXPECT_EQ(CountDefects(Describe(test::LoadShape("catmark_fan")), "non_manifold_edge"), 4u);
+    MeshInfo const vertices = Describe(test::LoadShape("catmark_nonman_verts"));
     EXPECT_EQ(CountDefects(vertices, "non_manifold_vertex"), 4u);
     EXPECT_EQ(CountDefects(vertices, "unreferenced_vertex"), 1u);
 }
@@ -471,28 +462,23 @@ TEST(UVInfo, ShapesWithoutOverlapInTheTableHaveNone) {
     for (char const* name :
          {"bilinear_cube", "catmark_cube", "catmark_dart_edgecorner", "catmark_torus", "loop_cube",
           "loop_tetrahedron", "loop_cubes_semisharp", "catmark_pyramid"}) {
-        EXPECT_EQ(Describe(test::LoadData(std::string("opensubdiv_shapes/") + name + ".obj"))
-                      .uv.overlapFaces,
-                  0u)
-            << name;
+        EXPECT_EQ(Describe(test::LoadShape(name)).uv.overlapFaces, 0u) << name;
     }
 }
 
 TEST(UVInfo, ShapesOfFullOverlapInTheTableOverlapInEveryFace) {
     for (char const* name : {"catmark_helmet", "catmark_torus_creases0"}) {
-        MeshInfo const info =
-            Describe(test::LoadData(std::string("opensubdiv_shapes/") + name + ".obj"));
+        MeshInfo const info = Describe(test::LoadShape(name));
         EXPECT_EQ(info.uv.overlapFaces, static_cast<size_t>(info.faces)) << name;
     }
 }
 
 TEST(UVInfo, TextureThatRepeatsOftenTakesNoMemory) {
     // Repeating textures have coordinates far beyond 1: here 24 x 24 tiles under one face.
-    rusage before{}, after{};
-    ::getrusage(RUSAGE_SELF, &before);
-    Describe(MakeQuads({Square(0, 0, 24)}));
-    ::getrusage(RUSAGE_SELF, &after);
-    EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 64 * 1024);  // kB
+    size_t const before = test::PeakMemory();
+    auto const uv = Describe(MakeQuads({Square(0, 0, 24)})).uv;
+    EXPECT_LT(test::PeakMemory() - before, test::kModestMemory);
+    EXPECT_EQ(uv.outOfRangeFaces, 1u);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/errors.h"
 #include "support/files.h"
 #include "support/meshes.h"
 

@@ -6,8 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "far_ext/error.h"
+#include "support/errors.h"
 #include "support/meshes.h"
+#include "support/values.h"
 
 namespace limn {
 namespace {
@@ -31,46 +32,58 @@ double FarthestFrom(std::vector<Point> const& from, std::vector<Point> const& to
             nearest = std::min(nearest, std::pow(p[0] - q[0], 2) + std::pow(p[1] - q[1], 2) +
                                             std::pow(p[2] - q[2], 2));
         }
-        worst = std::max(worst, std::sqrt(nearest));
+        worst = test::Worse(worst, std::sqrt(nearest));
     }
     return worst;
 }
 
+/// A file NAME_levelN.obj: NAME after N + 1 refinements by an independent library, in another
+/// vertex order; and the distance of our refinement from it.
+struct Baseline {
+    explicit Baseline(std::string const& file)
+        : mesh(test::LoadData("opensubdiv_hbr_baseline/" + file)) {
+        int const level = file[file.rfind("_level") + 6] - '0';
+        engine::Scene scene = test::LoadShape(file.substr(0, file.rfind("_level")));
+        if (!scene.hasBoundaryTag)
+            scene.cage.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+        ours = engine::RefineUniformly(scene, level + 1, false);
+    }
+    double FindDistance() const {
+        auto const a = PointsOf(ours), b = PointsOf(mesh);
+        return test::Worse(FarthestFrom(a, b), FarthestFrom(b, a));
+    }
+    engine::Scene mesh, ours;
+};
+
 /// The edits of this cage, a tag that today's OpenSubdiv ignores, set in after the first
 /// refinement.
-bool HasHierarchicalEdits(std::string const& name, int level) {
-    return name == "catmark_square_hedit0" && level > 0;
+bool HasHierarchicalEdits(std::string const& file) {
+    return file.starts_with("catmark_square_hedit0") && !file.ends_with("level0.obj");
+}
+
+std::vector<std::string> ListBaselines() {
+    auto files = test::ListData("opensubdiv_hbr_baseline");
+    std::erase_if(files, HasHierarchicalEdits);
+    return files;
 }
 
 class BaselineOf : public testing::TestWithParam<std::string> {};
 
-// NAME_levelN.obj holds NAME after N + 1 refinements by an independent library, in another vertex
-// order.
 TEST_P(BaselineOf, IsMet) {
-    std::string const file = GetParam();
-    std::string const name = file.substr(0, file.rfind("_level"));
-    int const level = file[file.rfind("_level") + 6] - '0';
-    if (HasHierarchicalEdits(name, level))
-        GTEST_SKIP() << "hierarchical edits have no effect today";
-    engine::Scene scene = test::LoadData("opensubdiv_shapes/" + name + ".obj");
-    if (name.starts_with("loop")) scene.cage.scheme = Sdc::SCHEME_LOOP;
-    if (name.starts_with("bilinear")) scene.cage.scheme = Sdc::SCHEME_BILINEAR;
-    if (!scene.hasBoundaryTag)
-        scene.cage.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-    auto const fine = engine::RefineUniformly(scene, level + 1, false);
-    auto const baseline = test::LoadData("opensubdiv_hbr_baseline/" + file);
-    EXPECT_EQ(fine.cage.GetNumFaces(), baseline.cage.GetNumFaces());
-    EXPECT_EQ(fine.cage.numVertices, baseline.cage.numVertices);
-    auto const ours = PointsOf(fine), theirs = PointsOf(baseline);
-    EXPECT_LT(FarthestFrom(theirs, ours), 1e-5);
-    EXPECT_LT(FarthestFrom(ours, theirs), 1e-5);
+    Baseline const baseline(GetParam());
+    EXPECT_EQ(baseline.ours.cage.GetNumFaces(), baseline.mesh.cage.GetNumFaces());
+    EXPECT_EQ(baseline.ours.cage.numVertices, baseline.mesh.cage.numVertices);
+    EXPECT_LT(baseline.FindDistance(), 1e-5);
 }
 
-INSTANTIATE_TEST_SUITE_P(OpenSubdiv, BaselineOf,
-                         testing::ValuesIn(test::ListData("opensubdiv_hbr_baseline")),
-                         [](testing::TestParamInfo<std::string> const& file) {
-                             return file.param.substr(0, file.param.find('.'));
-                         });
+INSTANTIATE_TEST_SUITE_P(OpenSubdiv, BaselineOf, testing::ValuesIn(ListBaselines()),
+                         [](auto const& file) { return test::NameInstance(file.param); });
+
+TEST(Refine, HierarchicalEditsHaveNoEffect) {
+    for (char const* file :
+         {"catmark_square_hedit0_level1.obj", "catmark_square_hedit0_level2.obj"})
+        EXPECT_GT(Baseline(file).FindDistance(), 0.1) << file;
+}
 
 // V' = V + E + F, E' = 2 E + 4 F on quads: a cube (8, 12, 6) becomes 26, then 98 vertices.
 TEST(Refine, CountsFollowTheSplit) {
@@ -84,8 +97,8 @@ TEST(Refine, CountsFollowTheSplit) {
 // carry over.
 TEST(Refine, LevelsCompose) {
     for (char const* name :
-         {"catmark_cubes_semisharp.obj", "catmark_dart_edgeonly.obj", "catmark_hole_test3.obj"}) {
-        auto const scene = test::LoadData(std::string("opensubdiv_shapes/") + name);
+         {"catmark_cubes_semisharp", "catmark_dart_edgeonly", "catmark_hole_test3"}) {
+        auto const scene = test::LoadShape(name);
         auto const once = engine::RefineUniformly(scene, 2, false);
         auto const twice =
             engine::RefineUniformly(engine::RefineUniformly(scene, 1, false), 1, false);
@@ -103,7 +116,7 @@ TEST(Refine, LevelsCompose) {
 
 // Limit points do not move when their cage is refined.
 TEST(Refine, TheLimitStaysWhereItIs) {
-    auto const scene = test::LoadData("opensubdiv_shapes/catmark_gregory_test6.obj");
+    auto const scene = test::LoadShape("catmark_gregory_test6");
     auto const coarse = engine::RefineUniformly(scene, 1, true),
                fine = engine::RefineUniformly(scene, 2, true);
     for (Index v = 0; v < 3 * coarse.cage.numVertices; ++v)
@@ -111,7 +124,8 @@ TEST(Refine, TheLimitStaysWhereItIs) {
 }
 
 TEST(Refine, TooManyLevelsAreRefused) {
-    EXPECT_THROW(engine::RefineUniformly(test::MakeCube(), 11, false), Error);
+    EXPECT_EQ(test::CodeOf([] { engine::RefineUniformly(test::MakeCube(), 11, false); }),
+              ErrorCode::BadOption);
 }
 
 }  // namespace

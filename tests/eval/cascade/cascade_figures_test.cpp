@@ -6,6 +6,7 @@
 
 #include "eval/cascade/cascade.h"
 #include "support/cascade_meshes.h"
+#include "support/fit_meshes.h"
 
 namespace limn {
 namespace {

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstring>
+#include <optional>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include "eval/cascade/cascade_sweep.h"
-#include "eval/kernels/instruction_set.h"
 #include "eval/parallel/step_pass.h"
 #include "support/fit_meshes.h"
+#include "support/instruction_sets.h"
 #include "support/refined.h"
-#include "support/stencils.h"
+#include "support/values.h"
 
 namespace limn {
 namespace {
 
 using eval::CascadeRows;
-using eval::InstructionSet;
 using far_ext::BoundaryRule;
 using far_ext::CascadeLevel;
 
@@ -33,8 +33,7 @@ std::vector<Case> MakeCases() {
     cases.push_back({"triangles with boundary", test::LoadData("cascade/gridholetri.obj"), 4});
     cases.back().scene.cage.scheme = Sdc::SCHEME_LOOP;
     cases.push_back({"quads", test::MakeTorus(12, 12), 3});
-    cases.push_back(
-        {"quads with creases", test::LoadData("opensubdiv_shapes/catmark_cube_creases0.obj"), 5});
+    cases.push_back({"quads with creases", test::LoadShape("catmark_cube_creases0"), 5});
     return cases;
 }
 
@@ -74,19 +73,17 @@ struct Filtered {
 
 template <class Scalar>
 void ExpectSameBytes(char const* name, CascadeLevel const& level, Scalar width) {
-    InstructionSet const before = eval::GetInstructionSet();
-    eval::SelectInstructionSet(InstructionSet::Sse2);
-    Filtered<Scalar> const first(level, width);
-    for (auto set : {InstructionSet::Sse2, InstructionSet::Avx2, InstructionSet::Avx512}) {
-        if (!eval::SelectInstructionSet(set)) continue;
+    std::optional<Filtered<Scalar>> first;
+    test::ForEachInstructionSet([&](eval::InstructionSet set) {
         for (size_t threads : {1, 4}) {
             tbb::global_control const limit(tbb::global_control::max_allowed_parallelism, threads);
-            EXPECT_TRUE(Filtered<Scalar>(level, width) == first)
+            Filtered<Scalar> const filtered(level, width);
+            if (!first) first = filtered;
+            EXPECT_TRUE(filtered == *first)
                 << name << ", " << eval::GetName(set) << ", " << threads << " threads, "
                 << sizeof(Scalar) << " bytes, width " << width;
         }
-    }
-    eval::SelectInstructionSet(before);
+    });
 }
 
 /// A sweep is X + theta D^-1 times the residual, to the bit; rows that stay are not written.

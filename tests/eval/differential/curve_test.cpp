@@ -66,12 +66,18 @@ TEST(Curve, ParabolasAreReproduced) {
     }
 }
 
-// Closed four-point: old points stay, a cubic through four points is met in the middle.
+// Closed four-point: old points stay; between them stands the cubic through the four round about,
+// in whose middle it is (-1, 9, 9, -1) / 16 of them.
 TEST(Curve, FourPointInterpolates) {
     Curve const coarse = MakePolygon(7);
     Curve const fine = eval::SubdivideCurve(coarse, CurveRule::FourPoint);
     ASSERT_EQ(fine.points.size(), 14u);
-    for (size_t i = 0; i < 7; ++i) EXPECT_TRUE((fine.points[2 * i] == coarse.points[i]).all());
+    for (size_t i = 0; i < 7; ++i) {
+        auto const at = [&](size_t k) { return coarse.points[(i + k) % 7]; };
+        EXPECT_TRUE((fine.points[2 * i] == at(0)).all());
+        DoubleLanes const middle = (9.0 * (at(0) + at(1)) - at(6) - at(2)) / 16.0;
+        EXPECT_LT((fine.points[2 * i + 1] - middle).abs().maxCoeff(), 1e-15);
+    }
 }
 
 TEST(Curve, TwoPointsStayALine) {

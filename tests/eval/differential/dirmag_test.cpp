@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/differential/dirmag.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "eval/differential/reconstruct.h"
@@ -40,7 +41,8 @@ TEST_P(DirMagOf, TheReferenceIsMet) {
     for (double& delta : deltas) delta /= 16.0;
     std::vector<double> positions(deltas.size(), 0.0);
     eval::Reconstructor(*refiner).Solve(deltas, positions, {.tolerance = 1e-12});
-    auto const reference = test::LoadPoints(std::string(mesh) + "_dss_" + rule + "_dm1_L2");
+    auto const reference =
+        test::LoadPoints(fmt::format("differential/{}_dss_{}_dm1_L2.obj", mesh, rule));
     EXPECT_LT(test::LargestDifference(positions, reference, true),
               1e-8 * test::BoxDiagonal(scene.positions));
 }

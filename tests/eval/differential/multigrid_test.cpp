@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/differential/multigrid.h"
 
-#include <random>
-
 #include <Eigen/SparseCholesky>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include "far_ext/topology/boundary.h"
+#include "support/errors.h"
+#include "support/fit_meshes.h"
 #include "support/refined.h"
 
 namespace limn {
@@ -44,13 +44,6 @@ Matrix ProlongationOf(MultigridLevel const& coarse, MultigridLevel const& fine) 
     Matrix matrix(fine.numUnknowns, coarse.numUnknowns);
     matrix.setFromTriplets(entries.begin(), entries.end());
     return matrix;
-}
-
-std::vector<double> RandomValues(size_t count, unsigned seed) {
-    std::mt19937 random(seed);
-    std::vector<double> values(count);
-    for (double& value : values) value = static_cast<double>(random()) / 4294967296.0 - 0.5;
-    return values;
 }
 
 std::vector<engine::Scene> TriangleMeshes() {
@@ -92,7 +85,7 @@ double LargestDefect(Far::TopologyRefiner const& refiner, MultigridLevel const& 
                 defect -=
                     x[3 * static_cast<size_t>(vertex) + c] - x[3 * static_cast<size_t>(other) + c];
             }
-            worst = std::max(worst, std::abs(defect));
+            worst = test::Worse(worst, std::abs(defect));
         }
     }
     return worst;
@@ -124,7 +117,7 @@ TEST(Multigrid, SolvesWithinFewIterations) {
         auto const refiner = test::MakeRefiner(scene, numLevels);
         eval::Multigrid multigrid(*refiner, FixedVertices::Boundary);
         auto const size = 3 * static_cast<size_t>(refiner->GetLevel(numLevels).GetNumVertices());
-        auto b = RandomValues(size, 1), x = RandomValues(size, 2);
+        auto b = test::MakeNoise(size, 1), x = test::MakeNoise(size, 2);
         auto const& graph = multigrid.GetLevels().back();
         if (graph.blocks.front().isSingular) {
             for (size_t c = 0; c < 3; ++c) {
@@ -154,7 +147,7 @@ TEST(Multigrid, AFreeBoundaryConverges) {
         eval::Multigrid multigrid(*refiner, FixedVertices::None);
         auto const size = 3 * static_cast<size_t>(refiner->GetLevel(4).GetNumVertices());
         std::vector<double> x(size, 0.0);
-        auto const report = multigrid.Solve(RandomValues(size, 4), x);
+        auto const report = multigrid.Solve(test::MakeNoise(size, 4), x);
         EXPECT_TRUE(report.converged);
         EXPECT_LE(report.iterations, 20);
     }
@@ -185,7 +178,7 @@ TEST(Multigrid, AgreesWithCholesky) {
     for (Index v = 0; v < level.GetNumVertices(); ++v)
         entries.emplace_back(v, v, weights[3].masses[v]);
     G.setFromTriplets(entries.begin(), entries.end());
-    auto const b = RandomValues(3 * static_cast<size_t>(level.GetNumVertices()), 3);
+    auto const b = test::MakeNoise(3 * static_cast<size_t>(level.GetNumVertices()), 3);
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> const cholesky(G);
     Eigen::MatrixXd const reference = cholesky.solve(
         Eigen::Map<Eigen::Matrix<double, -1, 3, Eigen::RowMajor> const>(b.data(), G.rows(), 3));
@@ -214,7 +207,7 @@ TEST(Multigrid, TheBitsDoNotDependOnThreads) {
         arena.execute([&] {
             eval::Multigrid multigrid(*refiner, FixedVertices::None);
             std::vector<double> x(size, 0.0);
-            multigrid.Solve(RandomValues(size, 5), x);
+            multigrid.Solve(test::MakeNoise(size, 5), x);
             results.push_back(std::move(x));
         });
     }
@@ -236,8 +229,7 @@ TEST(Multigrid, NothingToDoIsDone) {
 TEST(Multigrid, WeightsThatDoNotFitAreRefused) {
     auto const refiner = test::MakeRefiner(test::MakeBipyramid(5), 1);
     eval::Multigrid multigrid(*refiner, FixedVertices::None);
-    EXPECT_EQ(test::CodeOf([&] { multigrid.SetWeights(*refiner, {}); }),
-              static_cast<int>(ErrorCode::BadOption));
+    EXPECT_EQ(test::CodeOf([&] { multigrid.SetWeights(*refiner, {}); }), ErrorCode::BadOption);
 }
 
 }  // namespace

@@ -3,11 +3,14 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "eval/differential/subdivide_values.h"
 #include "far_ext/differential/laplacian.h"
 #include "far_ext/topology/boundary.h"
+#include "support/errors.h"
+#include "support/fit_meshes.h"
 #include "support/refined.h"
 
 namespace limn {
@@ -61,11 +64,12 @@ TEST_P(DifferentialOf, TheReferenceIsMet) {
     auto const refiner = test::MakeRefiner(scene, 2);
     Differential const result(scene, *refiner, subdivision);
     double const box = test::BoxDiagonal(scene.positions);
-    std::string const name = std::string(mesh) + "_dss_" + rule;
+    std::string const name = fmt::format("differential/{}_dss_{}", mesh, rule);
     auto deltas = result.deltas;
     for (double& delta : deltas) delta *= 16.0;  // the reference's are not scaled
-    EXPECT_LT(test::LargestDifference(deltas, test::LoadPoints(name + "_delta_L2")), 1e-13 * box);
-    EXPECT_LT(test::LargestDifference(result.positions, test::LoadPoints(name + "_L2"), true),
+    EXPECT_LT(test::LargestDifference(deltas, test::LoadPoints(name + "_delta_L2.obj")),
+              1e-13 * box);
+    EXPECT_LT(test::LargestDifference(result.positions, test::LoadPoints(name + "_L2.obj"), true),
               1e-8 * box);
     EXPECT_TRUE(result.report.converged);
 }
@@ -143,18 +147,13 @@ TEST(Reconstruct, HandlesThatCannotServeAreNamed) {
 // Two components, one of them open, and a vertex without any face: each is placed by itself.
 TEST(Reconstruct, ComponentsDoNotMix) {
     auto const one = test::MakeBipyramid(5), two = test::MakeFan(6, Sdc::SCHEME_LOOP, 0.1, 0.05);
-    auto both = one;
-    Index const first = one.cage.numVertices;
-    both.positions.insert(both.positions.end(), two.positions.begin(), two.positions.end());
+    auto both = test::Join({one, two});
     both.positions.insert(both.positions.end(), {5, 6, 7});
-    for (Index v : two.cage.faceVertices) both.cage.faceVertices.push_back(v + first);
-    both.cage.faceSizes.insert(both.cage.faceSizes.end(), two.cage.faceSizes.begin(),
-                               two.cage.faceSizes.end());
-    both.cage.numVertices += two.cage.numVertices + 1;
+    ++both.cage.numVertices;
     auto const refiner = test::MakeRefiner(both, 2), alone = test::MakeRefiner(one, 2);
     Differential const result(both, *refiner, SubdivisionRule::Scheme),
         single(one, *alone, SubdivisionRule::Scheme);
-    for (Index v = 0; v < first; ++v) {
+    for (Index v = 0; v < one.cage.numVertices; ++v) {
         for (size_t c = 0; c < 3; ++c) {
             EXPECT_NEAR(result.positions[3 * static_cast<size_t>(v) + c],
                         single.positions[3 * static_cast<size_t>(v) + c], 1e-9);
@@ -208,16 +207,16 @@ double FindChange(Far::TopologyRefiner const& refiner, std::vector<double> const
     double worst = 0.0;
     for (Index v = 0; v < level.GetNumVertices(); ++v) {
         Index const child = level.GetVertexChildVertex(v);
-        worst = std::max(worst, DistanceToFaces(level, coarse, {v}, PointOf(fine, child)));
+        worst = test::Worse(worst, DistanceToFaces(level, coarse, {v}, PointOf(fine, child)));
         std::vector<Index> near{child};
         for (Index edge : fineLevel.GetVertexEdges(child))
             near.push_back(far_ext::GetOtherEnd(fineLevel, edge, child));
-        worst = std::max(worst, DistanceToFaces(fineLevel, fine, near, PointOf(coarse, v)));
+        worst = test::Worse(worst, DistanceToFaces(fineLevel, fine, near, PointOf(coarse, v)));
     }
     for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
         auto const ends = level.GetEdgeVertices(edge);
-        worst = std::max(worst, DistanceToFaces(level, coarse, {ends[0], ends[1]},
-                                                PointOf(fine, level.GetEdgeChildVertex(edge))));
+        worst = test::Worse(worst, DistanceToFaces(level, coarse, {ends[0], ends[1]},
+                                                   PointOf(fine, level.GetEdgeChildVertex(edge))));
     }
     return worst;
 }

@@ -7,28 +7,15 @@
 
 #include "eval/surface/surface_place.h"
 #include "eval/surface/surface_sample.h"
+#include "support/errors.h"
 #include "support/fit_meshes.h"
 #include "support/form_meshes.h"
 #include "support/refined.h"
-#include "support/stencils.h"
 
 namespace limn {
 namespace {
 
 using Vector = Eigen::Vector3d;
-
-/// d0 of a coordinate, on the cage.
-std::vector<double> MakeCoordinateForm(engine::Scene const& scene, size_t axis) {
-    auto const refiner = test::MakeRefiner(scene, 0);
-    auto const level = refiner->GetLevel(0);
-    std::vector<double> form;
-    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
-        auto const ends = level.GetEdgeVertices(edge);
-        form.push_back(scene.positions[3 * static_cast<size_t>(std::max(ends[0], ends[1])) + axis] -
-                       scene.positions[3 * static_cast<size_t>(std::min(ends[0], ends[1])) + axis]);
-    }
-    return form;
-}
 
 /// Calls visit(place, vector) for places all over the surface.
 template <class Visit>
@@ -37,28 +24,32 @@ void ForEachPlace(engine::Scene const& scene, eval::FieldSurface const& field, V
     eval::LimitSurface const surface(*refiner);
     eval::FaceTree tree(surface, scene.positions, 3);
     eval::FieldSurface::Sampler sampler(field);
+    int numFaces = 0;
     for (Index face = 0; face < surface.GetNumFaces(); ++face) {
         if (!surface.HasLimit(face)) continue;
         tree.Bind(face);
+        ++numFaces;
         eval::ForEachGaussPoint(surface, face, [&](eval::SurfacePlace const& place, double) {
             Vector vector;
             sampler.Evaluate(face, place.domain, {&place.s, 1}, {&place.t, 1}, {&vector, 1});
             visit(eval::EvaluateSample(tree, place.domain, place.s, place.t, 1.0), vector);
         });
     }
+    EXPECT_GT(numFaces, 0);
 }
 
 /// The gradient of a coordinate is the axis less its part along the limit normal: the largest
 /// deviation from that.
 double FindDeviation(engine::Scene const& scene, int levels) {
     double worst = 0.0;
+    auto const refiner = far_ext::CreateRefiner(scene.cage);
     for (size_t axis = 0; axis < 3; ++axis) {
-        auto const form = MakeCoordinateForm(scene, axis);
+        auto const form = test::MakeCoordinateForm(refiner->GetLevel(0), scene.positions, axis);
         eval::FieldSurface const field(scene.cage, scene.positions, form, levels);
         ForEachPlace(scene, field, [&](eval::SurfaceSample const& sample, Vector const& vector) {
             Vector const unit = Vector::Unit(static_cast<Eigen::Index>(axis));
-            worst =
-                std::max(worst, (vector - (unit - unit.dot(sample.normal) * sample.normal)).norm());
+            worst = test::Worse(worst,
+                                (vector - (unit - unit.dot(sample.normal) * sample.normal)).norm());
         });
     }
     return worst;
@@ -84,9 +75,8 @@ TEST(FieldSurface, ConvergesEverywhereElse) {
 TEST(FieldSurface, DoesNotDependOnTheLevelWhereItIsExact) {
     for (auto const& scene : {test::MakeTorus(9, 7), test::MakeTriangleTorus(9, 7)}) {
         auto const refiner = test::MakeRefiner(scene, 0);
-        auto const noise =
-            test::MakeRandomValues(static_cast<size_t>(refiner->GetLevel(0).GetNumEdges()), 4);
-        std::vector<double> const form(noise.begin(), noise.end());
+        auto const form =
+            test::MakeNoise(static_cast<size_t>(refiner->GetLevel(0).GetNumEdges()), 4);
         std::vector<Vector> found[2];
         for (int k : {0, 1}) {
             eval::FieldSurface const field(scene.cage, scene.positions, form, 2 * k);
@@ -107,14 +97,16 @@ TEST(FieldSurface, IsTheSameFromBothSidesOfAnEdge) {
         auto const refiner = far_ext::CreateRefiner(scene.cage);
         eval::LimitSurface const surface(*refiner);
         auto const level = refiner->GetLevel(0);
-        auto const noise = test::MakeRandomValues(static_cast<size_t>(level.GetNumEdges()), 4);
         eval::FieldSurface const field(scene.cage, scene.positions,
-                                       std::vector<double>(noise.begin(), noise.end()), levels);
+                                       test::MakeNoise(static_cast<size_t>(level.GetNumEdges()), 4),
+                                       levels);
         eval::FieldSurface::Sampler sampler(field);
         double jump = 0.0;
+        int numEdges = 0;
         for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
             auto const faces = level.GetEdgeFaces(edge);
             if (faces.size() != 2 || level.IsEdgeInfSharp(edge)) continue;
+            ++numEdges;
             auto const locals = level.GetEdgeFaceLocalIndices(edge);
             for (double tau : {0.11, 0.4, 0.83}) {
                 Vector sides[2];
@@ -125,9 +117,10 @@ TEST(FieldSurface, IsTheSameFromBothSidesOfAnEdge) {
                     sampler.Evaluate(faces[k], place.domain, {&place.s, 1}, {&place.t, 1},
                                      {&sides[k], 1});
                 }
-                jump = std::max(jump, (sides[0] - sides[1]).norm() / (1.0 + sides[0].norm()));
+                jump = test::Worse(jump, (sides[0] - sides[1]).norm() / (1.0 + sides[0].norm()));
             }
         }
+        EXPECT_GT(numEdges, 0);
         return jump;
     };
     for (auto const& scene :

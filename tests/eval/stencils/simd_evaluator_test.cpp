@@ -12,10 +12,10 @@
 #include <opensubdiv/osd/cpuVertexBuffer.h>
 #include <tbb/global_control.h>
 
-#include "eval/kernels/instruction_set.h"
 #include "eval/stencils/stencil_evaluator.h"
 #include "far_ext/error.h"
 #include "far_ext/stencils/refined_stencils.h"
+#include "support/instruction_sets.h"
 #include "support/meshes.h"
 #include "support/stencils.h"
 
@@ -76,7 +76,7 @@ void ExpectOsdsValues(Far::TopologyRefiner const& refiner, RefinedStencilOptions
                       std::string const& name) {
     constexpr double kBound = 1e-6;
     auto const far = MakeFarTable(refiner, static_cast<int>(options.mode));
-    if (!far || far->GetNumStencils() == 0) return;
+    ASSERT_GT(far->GetNumStencils(), 0) << name;
     auto const source =
         test::MakeRandomValues(static_cast<size_t>(far->GetNumControlVertices()) * 3, 1);
     auto const expected = EvaluateWithOsd(*far, source, 3);
@@ -104,11 +104,11 @@ void ExpectOsdsValues(Far::TopologyRefiner const& refiner, RefinedStencilOptions
 }
 
 TEST(SimdEvaluator, EqualsOpenSubdivOnEveryCage) {
-    for (std::string const& file : test::ListData("opensubdiv_shapes")) {
-        auto const scene = test::LoadData("opensubdiv_shapes/" + file);
+    for (std::string const& shape : test::ListShapes()) {
+        auto const scene = test::LoadShape(shape);
         for (int level = 1; level <= 4; ++level) {
             auto const refiner = test::RefineUniformly(scene.cage, level);
-            std::string const name = fmt::format("{} level {}", file, level);
+            std::string const name = fmt::format("{} level {}", shape, level);
             ExpectOsdsValues(*refiner, {RefinedStencilOptions::Mode::Vertex, 0}, name);
             if (level > 2) continue;
             ExpectOsdsValues(*refiner, {RefinedStencilOptions::Mode::Varying, 0},
@@ -120,23 +120,7 @@ TEST(SimdEvaluator, EqualsOpenSubdivOnEveryCage) {
     }
 }
 
-/// Six weight sets through any evaluator that mirrors OpenSubdiv's raw form.
-template <class Evaluator>
-std::vector<float> EvaluateSets(test::FarLimitTable const& table,
-                                std::vector<float> const& source) {
-    size_t const size = static_cast<size_t>(table.GetNumStencils()) * 3;
-    std::vector<float> out(6 * size);
-    float* const to = out.data();
-    Evaluator::EvalStencils(
-        source.data(), Tight(3), to, Tight(3), to + size, Tight(3), to + 2 * size, Tight(3),
-        to + 3 * size, Tight(3), to + 4 * size, Tight(3), to + 5 * size, Tight(3),
-        table.GetSizes().data(), table.GetOffsets().data(), table.GetControlIndices().data(),
-        table.GetWeights().data(), table.GetDuWeights().data(), table.GetDvWeights().data(),
-        table.GetDuuWeights().data(), table.GetDuvWeights().data(), table.GetDvvWeights().data(), 0,
-        table.GetNumStencils());
-    return out;
-}
-
+/// Six weight sets of a compiled table.
 std::vector<float> EvaluateSets(CompiledStencils const& table, std::vector<float> const& source) {
     size_t const size = static_cast<size_t>(table.GetNumStencils()) * 3;
     std::vector<float> out(6 * size);
@@ -148,23 +132,10 @@ std::vector<float> EvaluateSets(CompiledStencils const& table, std::vector<float
     return out;
 }
 
-/// Set by set: each against its own largest value.
-void ExpectNearBySets(std::vector<float> const& ours, std::vector<float> const& theirs,
-                      std::string const& name) {
-    size_t const size = ours.size() / 6;
-    for (size_t set = 0; set < 6; ++set) {
-        auto const part = [&](std::vector<float> const& all) {
-            return std::vector<float>(all.begin() + set * size, all.begin() + (set + 1) * size);
-        };
-        EXPECT_LT(test::RelativeDifference(part(ours), part(theirs)), 1e-6)
-            << name << ", weight set " << set;
-    }
-}
-
 TEST(SimdEvaluator, LimitsAndDerivativesEqualOpenSubdivOnEveryCage) {
     int numTables = 0;
-    for (std::string const& file : test::ListData("opensubdiv_shapes")) {
-        auto const scene = test::LoadData("opensubdiv_shapes/" + file);
+    for (std::string const& shape : test::ListShapes()) {
+        auto const scene = test::LoadShape(shape);
         for (int level = 1; level <= 4; ++level) {
             auto const refiner = far_ext::CreateRefiner(scene.cage);
             refiner->RefineAdaptive(Far::TopologyRefiner::AdaptiveOptions(level));
@@ -173,18 +144,18 @@ TEST(SimdEvaluator, LimitsAndDerivativesEqualOpenSubdivOnEveryCage) {
             ++numTables;
             auto const source =
                 test::MakeRandomValues(static_cast<size_t>(far->GetNumControlVertices()) * 3, 2);
-            auto const expected = EvaluateSets<Osd::CpuEvaluator>(*far, source);
-            std::string const name = fmt::format("{} level {}", file, level);
-            ExpectNearBySets(EvaluateSets<SimdEvaluator>(*far, source), expected, name);
-            ExpectNearBySets(EvaluateSets(CompiledStencils::Compile(*far), source), expected,
-                             name + ", compiled");
+            auto const expected = test::EvaluateSets<Osd::CpuEvaluator>(*far, source);
+            std::string const name = fmt::format("{} level {}", shape, level);
+            test::ExpectNearBySets(test::EvaluateSets<SimdEvaluator>(*far, source), expected, name);
+            test::ExpectNearBySets(EvaluateSets(CompiledStencils::Compile(*far), source), expected,
+                                   name + ", compiled");
         }
     }
     EXPECT_GT(numTables, 200);
 }
 
 TEST(SimdEvaluator, BuffersAndTablesGoInAsIntoOpenSubdivs) {
-    auto const scene = test::LoadData("opensubdiv_shapes/catmark_cube.obj");
+    auto const scene = test::LoadShape("catmark_cube");
     auto const refiner = test::RefineUniformly(scene.cage, 3);
     auto const far = MakeFarTable(*refiner, Factory::INTERPOLATE_VERTEX);
     std::vector<float> const positions(scene.positions.begin(), scene.positions.end());
@@ -213,7 +184,7 @@ TEST(SimdEvaluator, BuffersAndTablesGoInAsIntoOpenSubdivs) {
 /// OpenSubdiv's evaluator puts stencils start.. into row 0 (length 3), or the wrong ones into row
 /// start (lengths 4 and 8).
 TEST(SimdEvaluator, ASubRangeIsThoseRowsOfTheWhole) {
-    auto const scene = test::LoadData("opensubdiv_shapes/catmark_dart_edgecorner.obj");
+    auto const scene = test::LoadShape("catmark_dart_edgecorner");
     for (int level : {1, 3}) {
         auto const refiner = test::RefineUniformly(scene.cage, level);
         auto const far = MakeFarTable(*refiner, Factory::INTERPOLATE_VERTEX);
@@ -261,7 +232,7 @@ TEST(SimdEvaluator, ASubRangeIsThoseRowsOfTheWhole) {
 }
 
 TEST(SimdEvaluator, StridesAndOffsetsAreKept) {
-    auto const scene = test::LoadData("opensubdiv_shapes/catmark_edgeonly.obj");
+    auto const scene = test::LoadShape("catmark_edgeonly");
     for (int level : {1, 2, 4}) {
         auto const refiner = test::RefineUniformly(scene.cage, level);
         CompiledStencils const table(far_ext::BuildRefinedStencils(*refiner));
@@ -292,9 +263,8 @@ TEST(SimdEvaluator, StridesAndOffsetsAreKept) {
 }
 
 TEST(SimdEvaluator, SameBytesOnEveryInstructionSetAndNumberOfThreads) {
-    InstructionSet const before = GetInstructionSet();
-    for (char const* file : {"catmark_car.obj", "loop_saddle_edgecorner.obj"}) {
-        auto const scene = test::LoadData(std::string("opensubdiv_shapes/") + file);
+    for (char const* shape : {"catmark_car", "loop_saddle_edgecorner"}) {
+        auto const scene = test::LoadShape(shape);
         for (int level : {1, 3}) {
             auto const refiner = test::RefineUniformly(scene.cage, level);
             auto const far = MakeFarTable(*refiner, Factory::INTERPOLATE_VERTEX);
@@ -305,9 +275,7 @@ TEST(SimdEvaluator, SameBytesOnEveryInstructionSetAndNumberOfThreads) {
                 auto const source = test::MakeRandomValues(
                     static_cast<size_t>(far->GetNumControlVertices()) * length, 5);
                 std::vector<float> first;
-                for (auto set :
-                     {InstructionSet::Sse2, InstructionSet::Avx2, InstructionSet::Avx512}) {
-                    if (!SelectInstructionSet(set)) continue;
+                test::ForEachInstructionSet([&](InstructionSet set) {
                     for (size_t threads : {1, 4}) {
                         tbb::global_control const limit(
                             tbb::global_control::max_allowed_parallelism, threads);
@@ -319,19 +287,17 @@ TEST(SimdEvaluator, SameBytesOnEveryInstructionSetAndNumberOfThreads) {
                         all.insert(all.end(), raw.begin(), raw.end());
                         if (first.empty()) first = all;
                         EXPECT_TRUE(AreSameBytes(all, first))
-                            << file << level << ", length " << length << ", " << GetName(set)
+                            << shape << level << ", length " << length << ", " << GetName(set)
                             << threads;
                     }
-                }
+                });
             }
         }
     }
-    SelectInstructionSet(before);
 }
 
 TEST(SimdEvaluator, ManyThreadsMayCallAtOnce) {
-    auto const refiner = test::RefineUniformly(
-        test::LoadData("opensubdiv_shapes/catmark_cube_creases0.obj").cage, 3);
+    auto const refiner = test::RefineUniformly(test::LoadShape("catmark_cube_creases0").cage, 3);
     auto const far = MakeFarTable(*refiner, Factory::INTERPOLATE_VERTEX);
     CompiledStencils const compiled(far_ext::BuildRefinedStencils(*refiner));
     auto const source =
@@ -354,9 +320,7 @@ TEST(SimdEvaluator, ManyThreadsMayCallAtOnce) {
 }
 
 TEST(SimdEvaluator, DerivativesHaveTheSameBytesOnEveryInstructionSet) {
-    InstructionSet const before = GetInstructionSet();
-    auto const refiner =
-        far_ext::CreateRefiner(test::LoadData("opensubdiv_shapes/catmark_cube_creases0.obj").cage);
+    auto const refiner = far_ext::CreateRefiner(test::LoadShape("catmark_cube_creases0").cage);
     refiner->RefineAdaptive(Far::TopologyRefiner::AdaptiveOptions(3));
     auto const far = test::MakeFarLimitTable(*refiner);
     auto const compiled = CompiledStencils::Compile(*far);
@@ -364,13 +328,11 @@ TEST(SimdEvaluator, DerivativesHaveTheSameBytesOnEveryInstructionSet) {
     auto const source =
         test::MakeRandomValues(static_cast<size_t>(far->GetNumControlVertices()) * 3, 6);
     std::vector<float> first;
-    for (auto set : {InstructionSet::Sse2, InstructionSet::Avx2, InstructionSet::Avx512}) {
-        if (!SelectInstructionSet(set)) continue;
+    test::ForEachInstructionSet([&](InstructionSet set) {
         auto const all = EvaluateSets(compiled, source);
         if (first.empty()) first = all;
         EXPECT_TRUE(AreSameBytes(all, first)) << GetName(set);
-    }
-    SelectInstructionSet(before);
+    });
 }
 
 TEST(SimdEvaluator, ManyRowsOfUnequalSizesAreSliced) {
@@ -440,7 +402,7 @@ TEST(SimdEvaluator, BadInputIsRefused) {
                                              to, Tight(3), table, 0, 1),
                  Error)
         << "no derivatives in this table";
-    Osd::CpuVertexBuffer* const noBuffer = nullptr;
+    Osd::CpuVertexBuffer* volatile noBuffer = nullptr;  // or g++ 12 warns of it
     EXPECT_THROW(SimdEvaluator::EvalStencils(noBuffer, Tight(3), noBuffer, Tight(3), &table),
                  Error);
     far_ext::StencilGroups wide;
@@ -468,38 +430,6 @@ TEST(SimdEvaluator, BadTablesAreRefused) {
     far_ext::StencilRowsView lacking;
     lacking.numRows = 1;
     EXPECT_THROW(CompiledStencils::Compile(lacking, {}), Error);
-}
-
-#ifndef __SANITIZE_THREAD__  // OpenMP's runtime is not instrumented
-TEST(StencilEvaluator, AllKindsAgreeWithDerivatives) {
-    for (char const* file :
-         {"catmark_bishop.obj", "loop_icosahedron.obj", "catmark_nonman_verts.obj"}) {
-        auto const refiner =
-            far_ext::CreateRefiner(test::LoadData(std::string("opensubdiv_shapes/") + file).cage);
-        refiner->RefineAdaptive(Far::TopologyRefiner::AdaptiveOptions(2));
-        auto const far = test::MakeFarLimitTable(*refiner);
-        auto const source =
-            test::MakeRandomValues(static_cast<size_t>(far->GetNumControlVertices()) * 3, 7);
-        auto const expected = EvaluateSets<Osd::CpuEvaluator>(*far, source);
-        size_t const size = expected.size() / 6;
-        for (auto kind : {EvaluatorKind::Simd, EvaluatorKind::OsdCpu, EvaluatorKind::OsdOmp}) {
-            far_ext::StencilRows const rows =
-                far_ext::GroupRows(far_ext::ViewLimitStencils(*far)).Expand();
-            StencilEvaluator const evaluator(kind, rows);
-            std::vector<float> all(expected.size());
-            SimdEvaluator::Targets targets;
-            for (size_t set = 0; set < 6; ++set) targets.push_back({&all[set * size], Tight(3)});
-            evaluator.EvalStencils(source.data(), Tight(3), targets, 0, far->GetNumStencils());
-            ExpectNearBySets(all, expected, fmt::format("{}, {}", file, GetName(kind)));
-        }
-    }
-}
-#endif
-
-TEST(StencilEvaluator, NamesAreFound) {
-    EXPECT_EQ(kEvaluatorWords.Find("osd-omp"), EvaluatorKind::OsdOmp);
-    EXPECT_EQ(kEvaluatorWords.Find("simd"), EvaluatorKind::Simd);
-    EXPECT_FALSE(kEvaluatorWords.Find("gpu"));
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 
 #include "eval/surface/surface_sample.h"
 #include "far_ext/rows/points.h"
+#include "support/errors.h"
+#include "support/fit_meshes.h"
 #include "support/refined.h"
 
 namespace limn {
@@ -33,7 +35,7 @@ struct Subject {
 template <class Act>
 void ExpectRefusal(Act act, std::string const& message) {
     EXPECT_EQ(test::RefusalOf(act), message);
-    EXPECT_EQ(test::CodeOf(act), static_cast<int>(ErrorCode::BadOption));
+    EXPECT_EQ(test::CodeOf(act), ErrorCode::BadOption);
 }
 
 std::vector<double> const kGrid{0.0, 0.01, 0.2, 0.33, 0.5, 0.66, 0.9, 1.0};

@@ -5,6 +5,8 @@
 
 #include "engine/scene/refine.h"
 #include "eval/surface/surface_sample.h"
+#include "support/errors.h"
+#include "support/fit_meshes.h"
 #include "support/refined.h"
 
 namespace limn {

@@ -6,6 +6,7 @@
 #include "engine/scene/refine.h"
 #include "eval/surface/surface_sample.h"
 #include "far_ext/topology/refiner.h"
+#include "support/errors.h"
 #include "support/files.h"
 #include "support/fit_meshes.h"
 #include "support/meshes.h"
@@ -15,19 +16,16 @@ namespace {
 
 class RefinedFacesOf : public testing::TestWithParam<char const*> {};
 INSTANTIATE_TEST_SUITE_P(Cages, RefinedFacesOf,
-                         testing::Values("catmark_cube_creases0.obj", "catmark_nonquads.obj",
-                                         "catmark_hole_test1.obj", "catmark_edgenone.obj",
-                                         "catmark_edgeonly.obj", "catmark_dart_edgecorner.obj",
-                                         "loop_cube_creases0.obj", "loop_saddle_edgecorner.obj",
-                                         "bilinear_cube.obj"),
-                         [](auto const& mesh) {
-                             std::string const name = mesh.param;
-                             return name.substr(0, name.find('.'));
-                         });
+                         testing::Values("catmark_cube_creases0", "catmark_nonquads",
+                                         "catmark_hole_test1", "catmark_edgenone",
+                                         "catmark_edgeonly", "catmark_dart_edgecorner",
+                                         "loop_cube_creases0", "loop_saddle_edgecorner",
+                                         "bilinear_cube"),
+                         [](auto const& mesh) { return std::string(mesh.param); });
 
 // Two roads to one limit: a place on the cage, and where it lies on the refined cage.
 TEST_P(RefinedFacesOf, TheRefinedCageHasTheSameLimitThere) {
-    engine::Scene const scene = test::LoadData(std::string("opensubdiv_shapes/") + GetParam());
+    engine::Scene const scene = test::LoadShape(GetParam());
     auto const refiner = far_ext::CreateRefiner(scene.cage);
     eval::LimitSurface const surface(*refiner);
     eval::FaceTree tree(surface, scene.positions, 3);

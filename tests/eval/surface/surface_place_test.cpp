@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "eval/surface/surface_sample.h"
+#include "support/errors.h"
+#include "support/fit_meshes.h"
 #include "support/refined.h"
 
 namespace limn {
@@ -122,7 +124,7 @@ TEST_P(PlaceOutside, IsRefused) {
     EXPECT_EQ(test::CodeOf([&, isLoop = isLoop, s = s, t = t] {
                   eval::CheckInDomain(isLoop, {0, 0, s, t});
               }),
-              static_cast<int>(ErrorCode::BadOption));
+              ErrorCode::BadOption);
 }
 
 TEST(SurfacePlace, RoundingAtADomainsEdgeIsNoReasonToRefuse) {

@@ -2,14 +2,15 @@
 #include "eval/surface/surface_sampler.h"
 
 #include <cmath>
-#include <random>
+#include <cstring>
 
 #include <gtest/gtest.h>
 
-#include "eval/kernels/instruction_set.h"
 #include "far_ext/topology/refiner.h"
-#include "support/files.h"
+#include "support/errors.h"
+#include "support/instruction_sets.h"
 #include "support/meshes.h"
+#include "support/values.h"
 
 namespace limn {
 namespace {
@@ -51,6 +52,7 @@ std::vector<std::vector<float>> SampleAll(engine::Scene const& scene, Quantity q
                              });
         }
     }
+    EXPECT_FALSE(planes[0].empty());
     return planes;
 }
 
@@ -68,8 +70,8 @@ TEST(SurfaceSampler, FloatAgreesWithDoubleOnARegularMesh) {
         for (int j = 0; j < 5; ++j) {
             for (int i = 0; i < 5; ++i, ++at) {
                 auto const x = eval::EvaluateSample(tree, 0, (i + 0.31) / 5, (j + 0.43) / 5, 1.0);
-                worst = std::max(worst, std::abs(static_cast<double>(planes[eval::kMean][at]) -
-                                                 x.curvature.mean));
+                worst = test::Worse(worst, std::abs(static_cast<double>(planes[eval::kMean][at]) -
+                                                    x.curvature.mean));
                 largest = std::max(largest, std::abs(x.curvature.mean));
             }
         }
@@ -107,7 +109,9 @@ TEST_P(AccuracyAtVertex, CurvatureKeepsItsDigitsWithDepth) {
     for (int depth = 1; depth <= 20; ++depth) {
         std::vector<double> const s{std::ldexp(0.61, -depth)}, t{std::ldexp(0.35, -depth)};
         auto const expected = eval::EvaluateSample(reference, 0, s[0], t[0], 1.0).curvature;
+        bool isSampled = false;
         sampler.Evaluate(0, s, t, [&](std::span<int const>, float const* p, size_t stride) {
+            isSampled = true;
             double const scale = std::max(std::abs(expected.k1), std::abs(expected.k2));
             EXPECT_NEAR(static_cast<double>(p[eval::kK1 * stride]), expected.k1, 2e-6 * scale)
                 << "depth " << depth;
@@ -116,6 +120,7 @@ TEST_P(AccuracyAtVertex, CurvatureKeepsItsDigitsWithDepth) {
             EXPECT_NEAR(static_cast<double>(p[eval::kMean * stride]), expected.mean, 2e-6 * scale)
                 << "depth " << depth;
         });
+        EXPECT_TRUE(isSampled);
     }
 }
 
@@ -126,25 +131,22 @@ protected:
         if (name == "fan7") return test::MakeFan(7, Sdc::SCHEME_CATMARK, 0.1, 0.05);
         if (name == "loop-fan5") return test::MakeFan(5, Sdc::SCHEME_LOOP, 0.1, 0.05);
         if (name == "loop-torus") return test::MakeTriangleTorus(12, 8);
-        return test::LoadData("opensubdiv_shapes/" + name);
+        return test::LoadShape(name);
     }
 };
 
 TEST_P(SurfaceSamplerOnMesh, SameBitsForEveryInstructionSet) {
     engine::Scene const scene = Load();
-    auto const before = eval::GetInstructionSet();
-    ASSERT_TRUE(eval::SelectInstructionSet(eval::InstructionSet::Sse2));
-    auto const expected = SampleAll(scene, Quantity::Tangents, 5);
-    for (auto set : {eval::InstructionSet::Avx2, eval::InstructionSet::Avx512}) {
-        if (!eval::SelectInstructionSet(set)) continue;  // this CPU lacks it
+    std::vector<std::vector<float>> first;
+    test::ForEachInstructionSet([&](eval::InstructionSet set) {
         auto const planes = SampleAll(scene, Quantity::Tangents, 5);
+        if (first.empty()) first = planes;
         for (size_t c = 0; c < planes.size(); ++c) {
-            EXPECT_EQ(0, std::memcmp(planes[c].data(), expected[c].data(),
-                                     planes[c].size() * sizeof(float)))
+            EXPECT_EQ(
+                0, std::memcmp(planes[c].data(), first[c].data(), planes[c].size() * sizeof(float)))
                 << eval::GetName(set) << " channel " << c;
         }
-    }
-    eval::SelectInstructionSet(before);
+    });
 }
 
 TEST_P(SurfaceSamplerOnMesh, EveryValueIsFiniteAndNormalsHaveLengthOne) {
@@ -209,15 +211,11 @@ TEST(SurfaceSampler, ATreeWithoutPositionsIsRefused) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, SurfaceSamplerOnMesh,
-                         testing::Values("fan7", "loop-fan5", "loop-torus",
-                                         "catmark_gregory_test6.obj", "catmark_nonquads.obj",
-                                         "catmark_dart_edgecorner.obj",
-                                         "catmark_cubes_semisharp.obj", "catmark_nonman_edges.obj"),
+                         testing::Values("fan7", "loop-fan5", "loop-torus", "catmark_gregory_test6",
+                                         "catmark_nonquads", "catmark_dart_edgecorner",
+                                         "catmark_cubes_semisharp", "catmark_nonman_edges"),
                          [](testing::TestParamInfo<char const*> const& mesh) {
-                             std::string name = mesh.param;
-                             name = name.substr(0, name.find('.'));
-                             std::replace(name.begin(), name.end(), '-', '_');
-                             return name;
+                             return test::NameInstance(mesh.param);
                          });
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/errors.h"
 #include "support/refined.h"
 
 namespace limn {

@@ -4,20 +4,18 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
-#include <random>
+#include <optional>
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "far_ext/cascade/bisection.h"
-#include "far_ext/cascade/cascade_stencils.h"
 #include "support/cascade_meshes.h"
+#include "support/errors.h"
 #include "support/form_meshes.h"
 
 namespace limn {
 namespace {
 
-using far_ext::Bisection;
 using far_ext::BoundaryRule;
 using far_ext::BuildCascadeLevel;
 using far_ext::CascadeLevel;
@@ -25,41 +23,10 @@ using far_ext::CascadeMesh;
 using far_ext::MakeCascadeMesh;
 using test::PointAt;
 
-engine::Scene LoadCage(std::string const& name) {
-    engine::Scene scene = test::LoadData("opensubdiv_shapes/" + name);
-    scene.cage.scheme = name.starts_with("loop")       ? Sdc::SCHEME_LOOP
-                        : name.starts_with("bilinear") ? Sdc::SCHEME_BILINEAR
-                                                       : Sdc::SCHEME_CATMARK;
-    return scene;
-}
-
-bool IsManifold(engine::Scene const& scene) {
-    auto const refiner = test::MakeRefiner(scene, 0);
-    auto const base = refiner->GetLevel(0);
-    for (Index i = 0; i < base.GetNumVertices(); ++i) {
-        if (base.IsVertexNonManifold(i)) return false;
-    }
-    return true;
-}
-
-/// Meshes with names: made ones of valence 2 to 12, open and closed, n-gons, creases of any
-/// sharpness, several components, genus 0 to 2; and those of Pixar's cages that are manifolds.
-std::vector<std::pair<std::string, engine::Scene>> const& GetMeshes() {
-    static auto const meshes = [] {
-        auto all = test::MakeFormMeshes();
-        for (auto const& name : test::ListData("opensubdiv_shapes")) {
-            auto const scene = LoadCage(name);
-            if (IsManifold(scene)) all.emplace_back(name, scene);
-        }
-        return all;
-    }();
-    return meshes;
-}
-
 /// Calls check(refiner, k, mesh, level) for the first two levels of all meshes.
 template <class Check>
 void ForAllLevels(BoundaryRule rule, Check const& check) {
-    for (auto const& [name, scene] : GetMeshes()) {
+    for (auto const& [name, scene] : test::GetCascadeMeshes()) {
         SCOPED_TRACE(name);
         auto const refiner = test::MakeRefiner(scene, 2);
         for (int k = 1; k <= 2; ++k) {
@@ -278,19 +245,6 @@ TEST(CascadeLevel, NeighboursLieNearEachOther) {
 
 // ---- parents ------------------------------------------------------------------------------------
 
-std::vector<double> ApplyParents(std::vector<int> const& offsets, std::vector<Index> const& parents,
-                                 std::vector<double> const& coarse) {
-    std::vector<double> fine(3 * (offsets.size() - 1), 0.0);
-    for (size_t i = 0; i + 1 < offsets.size(); ++i) {
-        for (int k = offsets[i]; k < offsets[i + 1]; ++k) {
-            for (size_t c = 0; c < 3; ++c)
-                fine[3 * i + c] +=
-                    coarse[3 * static_cast<size_t>(parents[k]) + c] / (offsets[i + 1] - offsets[i]);
-        }
-    }
-    return fine;
-}
-
 /// Linear interpolation as OpenSubdiv does it: its bilinear scheme on quads and n-gons, varying
 /// data on triangles.
 std::vector<double> InterpolateByFar(engine::Scene const& scene, int count) {
@@ -316,13 +270,13 @@ std::vector<double> InterpolateByFar(engine::Scene const& scene, int count) {
 }
 
 TEST(CascadeLevel, ParentsInterpolateLinearlyAsOpenSubdivDoes) {
-    for (auto const& [name, scene] : GetMeshes()) {
+    for (auto const& [name, scene] : test::GetCascadeMeshes()) {
         if (scene.cage.GetNumFaces() > 300) continue;
         auto const refiner = test::MakeRefiner(scene, 3);
         auto points = scene.positions;
         for (int k = 1; k <= 3; ++k) {
             auto const mesh = MakeCascadeMesh(*refiner, k);
-            points = ApplyParents(mesh.parentOffsets, mesh.parents, points);
+            points = test::ApplyParents(mesh.parentOffsets, mesh.parents, points);
         }
         EXPECT_LT(test::LargestDifference(points, InterpolateByFar(scene, 3)),
                   1e-13 * test::BoxDiagonal(scene.positions))
@@ -332,12 +286,12 @@ TEST(CascadeLevel, ParentsInterpolateLinearlyAsOpenSubdivDoes) {
 
 // The rows' parents are rows of the coarser level: the same interpolation in another order.
 TEST(CascadeLevel, RowsHaveTheirParentsAmongTheCoarserRows) {
-    for (auto const& [name, scene] : GetMeshes()) {
+    for (auto const& [name, scene] : test::GetCascadeMeshes()) {
         if (scene.cage.GetNumFaces() > 300) continue;
         auto const levels = test::QuarterLevels(scene, 3, BoundaryRule::Fixed);
         auto rows = scene.positions;
         for (auto const& level : levels)
-            rows = ApplyParents(level.parentOffsets, level.parents, rows);
+            rows = test::ApplyParents(level.parentOffsets, level.parents, rows);
         std::vector<double> points(rows.size());
         for (size_t row = 0; row < levels.back().vertices.size(); ++row) {
             std::copy_n(&rows[3 * row], 3,
@@ -377,7 +331,7 @@ OrderedMesh OrderBase(engine::Scene const& scene) {
 // point, edge point i) of quads and (e0, e2), (e1, e0), (e2, e1) of triangles, then (m, a), (m, b)
 // of each parent edge.
 TEST(CascadeLevel, VerticesComeInTheOrderOfTheSpecification) {
-    for (auto const& [name, scene] : GetMeshes()) {
+    for (auto const& [name, scene] : test::GetCascadeMeshes()) {
         if (scene.cage.GetNumFaces() > 300) continue;
         SCOPED_TRACE(name);
         auto const refiner = test::MakeRefiner(scene, 3);
@@ -434,7 +388,7 @@ TEST(CascadeLevel, VerticesComeInTheOrderOfTheSpecification) {
 
 // ---- what is no surface -------------------------------------------------------------------------
 
-int CodeOfFaces(std::vector<Index> faces, int faceSize = 3) {
+std::optional<ErrorCode> CodeOfFaces(std::vector<Index> faces, int faceSize = 3) {
     return test::CodeOf([&] {
         CascadeMesh mesh;
         mesh.faceSize = faceSize;
@@ -449,7 +403,7 @@ int CodeOfFaces(std::vector<Index> faces, int faceSize = 3) {
 }
 
 TEST(CascadeLevel, WhatIsNoDiscAtAVertexIsRefused) {
-    int const bad = static_cast<int>(ErrorCode::BadMesh), good = -1;
+    std::optional<ErrorCode> const bad = ErrorCode::BadMesh, good = {};
     EXPECT_EQ(CodeOfFaces({0, 1, 2, 0, 2, 3}), good);
     EXPECT_EQ(CodeOfFaces({0, 1, 2, 1, 0, 3, 0, 1, 4}), bad) << "three faces at an edge";
     EXPECT_EQ(CodeOfFaces({0, 1, 2, 0, 1, 3}), bad) << "two faces of opposite orientations";
@@ -470,11 +424,12 @@ TEST(CascadeLevel, WhatIsNoDiscAtAVertexIsRefused) {
 // OpenSubdiv refines them; it calls their vertices non-manifold.
 TEST(CascadeLevel, CagesThatAreNoManifoldAreRefused) {
     int numRefused = 0;
-    for (auto const& name : test::ListData("opensubdiv_shapes")) {
-        auto const scene = LoadCage(name);
-        int const code = test::CodeOf([&] { test::QuarterLevels(scene, 1, BoundaryRule::Fixed); });
-        EXPECT_EQ(code, IsManifold(scene) ? -1 : static_cast<int>(ErrorCode::BadMesh)) << name;
-        numRefused += code >= 0;
+    for (auto const& name : test::ListShapes()) {
+        auto const scene = test::LoadShape(name);
+        auto const code = test::CodeOf([&] { test::QuarterLevels(scene, 1, BoundaryRule::Fixed); });
+        EXPECT_EQ(code.has_value(), !test::IsManifold(scene)) << name;
+        EXPECT_EQ(code.value_or(ErrorCode::BadMesh), ErrorCode::BadMesh) << name;
+        numRefused += code.has_value();
     }
     EXPECT_GE(numRefused, 6);  // edges of more faces, vertices alone, a fan, a doubled edge
 }
@@ -489,325 +444,6 @@ TEST(CascadeLevel, AVertexWithoutFacesStays) {
     EXPECT_EQ(level.numUnknowns, 3);
     EXPECT_EQ((std::set<Index>{level.vertices.begin() + 3, level.vertices.end()}),
               (std::set<Index>{0, 3}));
-}
-
-// ---- bisection ----------------------------------------------------------------------------------
-
-std::vector<std::pair<std::string, engine::Scene>> const& GetTriangleMeshes() {
-    static auto const meshes = [] {
-        std::vector<std::pair<std::string, engine::Scene>> all;
-        for (auto const& mesh : GetMeshes()) {
-            if (mesh.second.cage.scheme == Sdc::SCHEME_LOOP) all.push_back(mesh);
-        }
-        for (auto const* name : {"icosa", "torustri", "gridholetri"})
-            all.emplace_back(name, test::LoadMesh(name));
-        return all;
-    }();
-    return meshes;
-}
-
-Bisection MakeBisection(engine::Scene const& scene) {
-    std::vector<std::array<Index, 2>> creases;
-    for (size_t i = 0; i < scene.cage.creaseSharpness.size(); ++i)
-        creases.push_back(
-            {scene.cage.creaseVertexPairs[2 * i], scene.cage.creaseVertexPairs[2 * i + 1]});
-    return Bisection(scene.cage.numVertices, scene.cage.faceVertices, scene.positions, creases,
-                     scene.cage.cornerVertices);
-}
-
-/// Calls check(coarse, coarsePoints, fine, points, bisection) for each of some passes over a mesh.
-template <class Check>
-void ForAllPasses(engine::Scene const& scene, int count, Check const& check) {
-    auto bisection = MakeBisection(scene);
-    CascadeMesh coarse = test::MakeSameMesh(scene);
-    auto coarsePoints = scene.positions;
-    for (int pass = 0; pass < count; ++pass) {
-        CascadeMesh const fine = bisection.Refine();
-        auto const points = ApplyParents(fine.parentOffsets, fine.parents, coarsePoints);
-        check(coarse, coarsePoints, fine, points, bisection);
-        coarse = fine;
-        coarsePoints = points;
-    }
-}
-
-double FindArea(std::vector<double> const& points, Index const* face) {
-    return 0.5 * (PointAt(points, face[1]) - PointAt(points, face[0]))
-                     .cross(PointAt(points, face[2]) - PointAt(points, face[0]))
-                     .norm();
-}
-
-double FindLength(std::vector<double> const& points, Index a, Index b) {
-    return (PointAt(points, a) - PointAt(points, b)).norm();
-}
-
-/// Undirected edges and how many faces they have; sorted pairs.
-std::map<std::array<Index, 2>, int> CountFacesAtEdges(CascadeMesh const& mesh) {
-    std::map<std::array<Index, 2>, int> counts;
-    for (size_t face = 0; face < mesh.faces.size(); face += 3) {
-        for (size_t k = 0; k < 3; ++k) {
-            Index const a = mesh.faces[face + k], b = mesh.faces[face + (k + 1) % 3];
-            ++counts[{std::min(a, b), std::max(a, b)}];
-        }
-    }
-    return counts;
-}
-
-// A hanging vertex would leave an edge with one face inside: the boundary keeps its length.
-// BuildCascadeLevel looks at the rest, a disc of one orientation at each vertex. Euler's number
-// stays.
-TEST(Bisection, LeavesNoHangingVertex) {
-    for (auto const& [name, scene] : GetTriangleMeshes()) {
-        double length = -1.0;
-        Index euler = 0;
-        auto const measure = [&, name = name](CascadeMesh const& mesh,
-                                              std::vector<double> const& points) {
-            double sum = 0.0;
-            auto const edges = CountFacesAtEdges(mesh);
-            for (auto const& [edge, count] : edges) {
-                EXPECT_LE(count, 2) << name;
-                if (count == 1) sum += FindLength(points, edge[0], edge[1]);
-            }
-            Index const number =
-                mesh.numVertices - static_cast<Index>(edges.size()) + mesh.GetNumFaces();
-            if (length < 0.0) {
-                length = sum;
-                euler = number;
-            }
-            EXPECT_NEAR(sum, length, 1e-12 * length) << name;
-            EXPECT_EQ(number, euler) << name;
-        };
-        measure(test::MakeSameMesh(scene), scene.positions);
-        ForAllPasses(scene, 5,
-                     [&](auto const&, auto const&, CascadeMesh const& fine,
-                         std::vector<double> const& points, auto const&) {
-                         measure(fine, points);
-                         EXPECT_NO_THROW(BuildCascadeLevel(fine, {}, BoundaryRule::Fixed));
-                     });
-    }
-}
-
-// Each pass cuts a triangle once, or its halves again: areas are A / 2^m of the first triangle's, m
-// at least the number of passes, they add up to A, and normals stay.
-TEST(Bisection, HalvesTheAreasOfTheTrianglesItComesFrom) {
-    for (auto const& [name, scene] : GetTriangleMeshes()) {
-        int pass = 0;
-        ForAllPasses(
-            scene, 5,
-            [&, name = name, scene = scene](auto const&, auto const&, CascadeMesh const& fine,
-                                            std::vector<double> const& points,
-                                            Bisection const& bisection) {
-                ++pass;
-                ASSERT_EQ(static_cast<Index>(bisection.GetBaseFaces().size()), fine.GetNumFaces());
-                std::vector<double> sums(scene.cage.faceSizes.size(), 0.0);
-                for (Index face = 0; face < fine.GetNumFaces(); ++face) {
-                    Index const* const f = &fine.faces[3 * static_cast<size_t>(face)];
-                    Index const base = bisection.GetBaseFaces()[face];
-                    Index const* const b = &scene.cage.faceVertices[3 * static_cast<size_t>(base)];
-                    double const whole = FindArea(scene.positions, b), area = FindArea(points, f);
-                    double const halvings = std::log2(whole / area);
-                    EXPECT_NEAR(halvings, std::round(halvings), 1e-6) << name;
-                    EXPECT_GE(std::round(halvings), pass) << name;
-                    EXPECT_LE(std::round(halvings), 2 * pass) << name;
-                    sums[base] += area;
-                    Eigen::Vector3d const normal =
-                        (PointAt(points, f[1]) - PointAt(points, f[0]))
-                            .cross(PointAt(points, f[2]) - PointAt(points, f[0]));
-                    Eigen::Vector3d const baseNormal =
-                        (PointAt(scene.positions, b[1]) - PointAt(scene.positions, b[0]))
-                            .cross(PointAt(scene.positions, b[2]) - PointAt(scene.positions, b[0]));
-                    EXPECT_NEAR(normal.normalized().dot(baseNormal.normalized()), 1.0, 1e-9)
-                        << name;
-                }
-                for (size_t base = 0; base < sums.size(); ++base) {
-                    double const whole =
-                        FindArea(scene.positions, &scene.cage.faceVertices[3 * base]);
-                    EXPECT_NEAR(sums[base], whole, 1e-12 * whole) << name;
-                }
-            });
-    }
-}
-
-// On a lattice the longest edges are the diagonals, which two triangles share: nothing is ever cut
-// twice in a pass.
-TEST(Bisection, DoublesALatticesTriangles) {
-    Index count = 40;
-    ForAllPasses(test::MakeLattice(5, 4, Sdc::SCHEME_LOOP), 6,
-                 [&](auto const&, auto const&, CascadeMesh const& fine, auto const&, auto const&) {
-                     EXPECT_EQ(fine.GetNumFaces(), count *= 2);
-                 });
-}
-
-// Cutting opposite the newest vertex again and again makes triangles of four shapes, however often.
-TEST(Bisection, HasAtMostFourShapesInATriangle) {
-    for (auto const& [name, scene] : GetTriangleMeshes()) {
-        int pass = 0;
-        ForAllPasses(
-            scene, 6,
-            [&, name = name, scene = scene](auto const&, auto const&, CascadeMesh const& fine,
-                                            std::vector<double> const& points,
-                                            Bisection const& bisection) {
-                if (++pass < 6) return;
-                std::vector<std::set<std::array<int, 2>>> shapes(
-                    scene.cage.faceSizes.size());  // by the two shorter sides to the longest
-                for (Index face = 0; face < fine.GetNumFaces(); ++face) {
-                    Index const* const f = &fine.faces[3 * static_cast<size_t>(face)];
-                    std::array<double, 3> sides{FindLength(points, f[0], f[1]),
-                                                FindLength(points, f[1], f[2]),
-                                                FindLength(points, f[2], f[0])};
-                    std::sort(sides.begin(), sides.end());
-                    shapes[bisection.GetBaseFaces()[face]].insert(
-                        {static_cast<int>(std::lround(1e4 * sides[0] / sides[2] + 0.317)),
-                         static_cast<int>(std::lround(1e4 * sides[1] / sides[2] + 0.317))});
-                }
-                for (auto const& found : shapes) EXPECT_LE(found.size(), 4u) << name;
-            });
-    }
-}
-
-// Exactly the longest edges of the first mesh are cut first, of equal ones that with the smallest
-// pair of vertices. Then, of triangles with one new vertex, the edge opposite it, which is the one
-// without it.
-TEST(Bisection, CutsTheLongestEdgesAndThenThoseOppositeTheNewestVertices) {
-    for (auto const& [name, scene] : GetTriangleMeshes()) {
-        int pass = 0;
-        ForAllPasses(scene, 2,
-                     [&, name = name, scene = scene](
-                         CascadeMesh const& coarse, std::vector<double> const& coarsePoints,
-                         CascadeMesh const& fine, auto const&, auto const&) {
-                         ++pass;
-                         std::set<std::array<Index, 2>> cut, expected;
-                         for (Index i = coarse.numVertices; i < fine.numVertices; ++i) {
-                             Index const a = fine.parents[fine.parentOffsets[i]],
-                                         b = fine.parents[fine.parentOffsets[i] + 1];
-                             cut.insert({std::min(a, b), std::max(a, b)});
-                         }
-                         for (size_t face = 0; face < coarse.faces.size(); face += 3) {
-                             std::vector<std::tuple<double, Index, Index>> edges;
-                             for (size_t k = 0; k < 3; ++k) {
-                                 Index const a = coarse.faces[face + k],
-                                             b = coarse.faces[face + (k + 1) % 3];
-                                 bool const isNew = std::max(a, b) >= scene.cage.numVertices;
-                                 // Squares as sums of squares of differences in the order x, y, z,
-                                 // so that equal edges are equal to the bit.
-                                 Eigen::Vector3d const d = PointAt(coarsePoints, std::max(a, b)) -
-                                                           PointAt(coarsePoints, std::min(a, b));
-                                 double const square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-                                 if (pass == 1 || !isNew)
-                                     edges.emplace_back(-square, std::min(a, b), std::max(a, b));
-                             }
-                             if (edges.empty()) continue;  // two or three new vertices
-                             auto const first = *std::min_element(edges.begin(), edges.end());
-                             expected.insert({std::get<1>(first), std::get<2>(first)});
-                         }
-                         if (pass == 1)
-                             EXPECT_EQ(cut, expected) << name;
-                         else
-                             EXPECT_TRUE(std::includes(cut.begin(), cut.end(), expected.begin(),
-                                                       expected.end()))
-                                 << name;
-                     });
-    }
-}
-
-TEST(Bisection, PutsNewVerticesInTheOrderOfTheirEdges) {
-    for (auto const& [name, scene] : GetTriangleMeshes()) {
-        ForAllPasses(scene, 3,
-                     [&, name = name](CascadeMesh const& coarse, auto const&,
-                                      CascadeMesh const& fine, auto const&, auto const&) {
-                         std::map<std::set<Index>, int> numbers;
-                         for (size_t face = 0; face < coarse.faces.size(); face += 3) {
-                             for (size_t k = 0; k < 3; ++k) {
-                                 numbers.try_emplace(
-                                     {coarse.faces[face + k], coarse.faces[face + (k + 1) % 3]},
-                                     static_cast<int>(numbers.size()));
-                             }
-                         }
-                         int last = -1;
-                         for (Index i = 0; i < fine.numVertices; ++i) {
-                             std::set<Index> const parents(
-                                 fine.parents.begin() + fine.parentOffsets[i],
-                                 fine.parents.begin() + fine.parentOffsets[i + 1]);
-                             if (i < coarse.numVertices) {
-                                 EXPECT_EQ(parents, std::set<Index>{i}) << name;
-                             } else {
-                                 EXPECT_GT(numbers.at(parents), last) << name;
-                                 last = numbers.at(parents);
-                             }
-                         }
-                     });
-    }
-}
-
-// Pieces of a crease are edges of the mesh, as long as the crease; corners are the same vertices.
-TEST(Bisection, CarriesCreasesAndCorners) {
-    int numCreased = 0;
-    for (auto const& [name, scene] : GetTriangleMeshes()) {
-        if (scene.cage.creaseSharpness.empty()) continue;
-        ++numCreased;
-        double length = 0.0;
-        for (size_t i = 0; i < scene.cage.creaseVertexPairs.size(); i += 2)
-            length += FindLength(scene.positions, scene.cage.creaseVertexPairs[i],
-                                 scene.cage.creaseVertexPairs[i + 1]);
-        ForAllPasses(
-            scene, 4,
-            [&, name = name, scene = scene](auto const&, auto const&, CascadeMesh const& fine,
-                                            std::vector<double> const& points, auto const&) {
-                auto const edges = CountFacesAtEdges(fine);
-                double sum = 0.0;
-                for (auto const& [a, b] : fine.creases) {
-                    EXPECT_TRUE(edges.count({std::min(a, b), std::max(a, b)})) << name;
-                    sum += FindLength(points, a, b);
-                }
-                EXPECT_NEAR(sum, length, 1e-12 * length) << name;
-                EXPECT_EQ(fine.corners, scene.cage.cornerVertices) << name;
-            });
-    }
-    EXPECT_GT(numCreased, 5);
-}
-
-// ---- sweeps as stencils -------------------------------------------------------------------------
-
-// 1 - s (m + sum e) + s sum e + s m = 1 in every row, whatever the weights: X = X0 = constant
-// stays. Rows that stay are themselves.
-TEST(CascadeStencils, RowsAddUpToOne) {
-    for (auto rule : {BoundaryRule::Fixed, BoundaryRule::Natural}) {
-        for (auto const& [name, scene] : GetMeshes()) {
-            if (scene.cage.GetNumFaces() > 300) continue;
-            auto const levels = test::QuarterLevels(scene, 1, rule);
-            auto const& level = levels.back();
-            std::mt19937 random(3);
-            auto const draw = [&](size_t count) {
-                std::vector<float> values(count);
-                for (float& value : values) value = static_cast<float>(random()) * 0x1p-32f;
-                return values;
-            };
-            far_ext::CascadeStencils table(level);
-            auto const edges = draw(level.neighbours.size());
-            auto scales = draw(static_cast<size_t>(level.numUnknowns));
-            if (!scales.empty()) scales[0] = 0.0f;  // one that nothing moves
-            table.SetWeights(level, edges, draw(scales.size()), scales);
-            ASSERT_EQ(table.GetNumStencils(), level.GetNumRows());
-            ASSERT_EQ(table.GetNumControlVertices(), 2 * level.GetNumRows());
-            size_t at = 0;
-            for (Index row = 0; row < table.GetNumStencils(); ++row) {
-                ASSERT_EQ(table.GetOffsets()[row], static_cast<Index>(at)) << name;
-                double sum = 0.0, largest = 0.0;
-                bool isItself = true;
-                for (int k = 0; k < table.GetSizes()[row]; ++k, ++at) {
-                    double const weight = table.GetWeights()[at];
-                    Index const index = table.GetControlIndices()[at];
-                    ASSERT_GE(index, 0);
-                    ASSERT_LT(index, table.GetNumControlVertices());
-                    sum += weight;
-                    largest = std::max(largest, std::abs(weight));
-                    isItself = isItself && weight == (index == row ? 1.0 : 0.0);
-                }
-                EXPECT_NEAR(sum, 1.0, 1e-6 * largest) << name;
-                EXPECT_EQ(isItself, row >= level.numUnknowns || row == 0) << name;
-            }
-            EXPECT_EQ(at, table.GetWeights().size());
-        }
-    }
 }
 
 }  // namespace

@@ -3,9 +3,11 @@
 
 #include <numeric>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "far_ext/differential/subdivision_rows.h"
+#include "support/errors.h"
+#include "support/fit_meshes.h"
 #include "support/refined.h"
 
 namespace limn {
@@ -21,7 +23,8 @@ TEST_P(ButterflyOf, TheReferenceIsMet) {
     auto const refiner = test::MakeRefiner(scene, 2);
     auto points = scene.positions;
     for (int level : {1, 2}) points = test::Apply(far_ext::BuildButterfly(*refiner, level), points);
-    auto const reference = test::LoadPoints(std::string(GetParam()) + "_sub_butterfly_L2");
+    auto const reference =
+        test::LoadPoints(fmt::format("differential/{}_sub_butterfly_L2.obj", GetParam()));
     EXPECT_LT(test::LargestDifference(points, reference),
               1e-13 * test::BoxDiagonal(scene.positions));
 }
@@ -59,20 +62,6 @@ TEST(Butterfly, ThreeFacesAtAnEdgeAreRefused) {
                                        {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}, Sdc::SCHEME_LOOP);
     auto const refiner = test::MakeRefiner(scene, 1);
     EXPECT_NE(test::RefusalOf([&] { far_ext::BuildButterfly(*refiner, 1); }), "");
-}
-
-// The other rules' tables are what OpenSubdiv does to values.
-TEST(SubdivisionRows, AreOpenSubdivs) {
-    for (auto const& scene : {test::MakeCube(), test::MakeBipyramid(7),
-                              test::MakeFan(5, Sdc::SCHEME_CATMARK, 0.1, 0.2)}) {
-        auto const refiner = test::MakeRefiner(scene, 2);
-        auto const rows =
-            far_ext::BuildSubdivisionRows(*refiner, 1, far_ext::SubdivisionRule::Scheme);
-        auto const fine = test::Apply(rows, scene.positions);
-        EXPECT_LT(
-            test::LargestDifference(fine, eval::RefineValues<3>(*refiner, 1, scene.positions)),
-            1e-15);
-    }
 }
 
 }  // namespace

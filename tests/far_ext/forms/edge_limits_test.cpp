@@ -5,10 +5,10 @@
 #include <opensubdiv/sdc/crease.h>
 
 #include "far_ext/limit/limit_matrix.h"
+#include "support/errors.h"
 #include "support/fit_meshes.h"
 #include "support/form_meshes.h"
 #include "support/refined.h"
-#include "support/stencils.h"
 
 namespace limn {
 namespace {
@@ -48,8 +48,7 @@ TEST_P(EdgeLimitsWith, GradientsAddUpToDifferencesOfLimits) {
         Set(scene);
         auto const refiner = test::MakeRefiner(scene, 2);
         auto const level = refiner->GetLevel(1);
-        auto const noise = test::MakeRandomValues(static_cast<size_t>(level.GetNumVertices()), 3);
-        std::vector<double> const f(noise.begin(), noise.end());
+        auto const f = test::MakeNoise(static_cast<size_t>(level.GetNumVertices()), 3);
         auto const A = far_ext::LimitMatrix::Build(*refiner, 1);
         std::vector<double> form;
         for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
@@ -77,8 +76,7 @@ TEST_P(EdgeLimitsWith, HalvesAddUp) {
         Set(scene);
         auto const refiner = test::MakeRefiner(scene, 3);
         auto const level = refiner->GetLevel(1), fine = refiner->GetLevel(2);
-        auto const noise = test::MakeRandomValues(static_cast<size_t>(level.GetNumEdges()), 5);
-        std::vector<double> const form(noise.begin(), noise.end());
+        auto const form = test::MakeNoise(static_cast<size_t>(level.GetNumEdges()), 5);
         std::vector<double> next(static_cast<size_t>(fine.GetNumEdges()));
         far_ext::BuildFormStencils(*refiner, 2).s1.Apply(form.data(), next.data(), 1);
         far_ext::EdgeLimits coarse(*refiner, 1), finer(*refiner, 2);
@@ -123,8 +121,7 @@ TEST(EdgeLimits, AgreeWithRefining) {
           WithCrease(test::MakeTorus(5, 4)), WithCrease(test::MakeIrregularTriangles(5, 4, 2))}) {
         auto const refiner = test::MakeRefiner(scene, 7);
         auto const level = refiner->GetLevel(1);
-        auto const noise = test::MakeRandomValues(static_cast<size_t>(level.GetNumEdges()), 5);
-        std::vector<double> const form(noise.begin(), noise.end());
+        auto const form = test::MakeNoise(static_cast<size_t>(level.GetNumEdges()), 5);
         std::vector<double> values = form;
         for (int next = 2; next <= 7; ++next) {
             auto const s1 = far_ext::BuildFormStencils(*refiner, next).s1;

@@ -17,13 +17,12 @@ using far_ext::FaceRing;
 using far_ext::FaceRingGatherer;
 using far_ext::RingSubdivision;
 
-/// Calls visit(scene, ring, points) for the vertex ring of every face of every regression cage.
+/// Calls visit(scene, refiner, face, ring, points) for the vertex ring of every face of every
+/// regression cage; of large ones, of some forty.
 template <class Visit>
 void ForEachRing(Visit visit) {
-    for (std::string const& name : test::ListData("opensubdiv_shapes")) {
-        engine::Scene scene = test::LoadData("opensubdiv_shapes/" + name);
-        if (name.starts_with("loop")) scene.cage.scheme = Sdc::SCHEME_LOOP;
-        if (name.starts_with("bilinear")) scene.cage.scheme = Sdc::SCHEME_BILINEAR;
+    for (std::string const& name : test::ListShapes()) {
+        engine::Scene scene = test::LoadShape(name);
         auto const refiner = far_ext::CreateRefiner(scene.cage);
         FaceRingGatherer gatherer(refiner->GetLevel(0), -1);
         FaceRing ring;

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/errors.h"
 #include "support/refined.h"
 
 namespace limn {
@@ -59,8 +60,7 @@ TEST(Points, AnArrayThatIsTooShortIsRefusedWithItsBound) {
     std::vector<double> const positions(6);
     EXPECT_EQ(test::RefusalOf([&] { far_ext::CheckPoints(positions, 8); }),
               "positions: 6 values are too few for 8 vertices of 3");
-    EXPECT_EQ(test::CodeOf([&] { far_ext::CheckPoints(positions, 8); }),
-              static_cast<int>(ErrorCode::BadOption));
+    EXPECT_EQ(test::CodeOf([&] { far_ext::CheckPoints(positions, 8); }), ErrorCode::BadOption);
 }
 
 }  // namespace

@@ -3,47 +3,27 @@
 
 #include <cmath>
 #include <map>
-#include <memory>
 #include <numeric>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <opensubdiv/far/stencilTableFactory.h>
 
 #include "far_ext/error.h"
 #include "far_ext/topology/refiner.h"
 #include "support/meshes.h"
+#include "support/stencils.h"
 
 namespace limn::far_ext {
 namespace {
 
 using Mode = RefinedStencilOptions::Mode;
-using FarFactory = Far::StencilTableFactoryReal<double>;
-
-std::unique_ptr<Far::TopologyRefiner> Refine(ControlMesh const& cage, int level) {
-    auto refiner = CreateRefiner(cage);
-    refiner->RefineUniform(Far::TopologyRefiner::UniformOptions(level));
-    return refiner;
-}
-
-/// Far's own table of the last level, in double.
-std::unique_ptr<Far::StencilTableReal<double> const> MakeFarTable(
-    Far::TopologyRefiner const& refiner, Mode mode) {
-    FarFactory::Options options;
-    options.generateIntermediateLevels = false;
-    options.generateOffsets = true;
-    options.interpolationMode = mode == Mode::Vertex    ? FarFactory::INTERPOLATE_VERTEX
-                                : mode == Mode::Varying ? FarFactory::INTERPOLATE_VARYING
-                                                        : FarFactory::INTERPOLATE_FACE_VARYING;
-    return std::unique_ptr<Far::StencilTableReal<double> const>(
-        FarFactory::Create(refiner, options));
-}
+using test::RefineUniformly;
 
 /// Every weight is Far's in double, rounded to float; where limn takes Far's table in float, to its
 /// bound.
 void ExpectFarsWeights(Far::TopologyRefiner const& refiner, Mode mode, std::string const& name,
                        double bound = 1.2e-7) {
-    auto const theirs = MakeFarTable(refiner, mode);
+    auto const theirs = test::MakeFarTable<double>(refiner, static_cast<int>(mode));
     StencilRows const ours = BuildRefinedStencils(refiner, {mode, 0}).Expand();
     ASSERT_EQ(ours.GetNumStencils(), theirs->GetNumStencils()) << name;
     ASSERT_EQ(ours.GetNumControlVertices(), theirs->GetNumControlVertices()) << name;
@@ -69,39 +49,39 @@ void ExpectFarsWeights(Far::TopologyRefiner const& refiner, Mode mode, std::stri
 }
 
 TEST(RefinedStencils, VertexWeightsAreFarsOnEveryCage) {
-    for (std::string const& file : test::ListData("opensubdiv_shapes")) {
-        auto const scene = test::LoadData("opensubdiv_shapes/" + file);
+    for (std::string const& shape : test::ListShapes()) {
+        auto const scene = test::LoadShape(shape);
         for (int level = 1; level <= 4; ++level) {
             if (scene.cage.GetNumFaces() << (2 * level) > 300000)
                 break;  // the rest: simd_evaluator_test
-            ExpectFarsWeights(*Refine(scene.cage, level), Mode::Vertex,
-                              fmt::format("{} level {}", file, level));
+            ExpectFarsWeights(*RefineUniformly(scene.cage, level), Mode::Vertex,
+                              fmt::format("{} level {}", shape, level));
         }
     }
 }
 
 TEST(RefinedStencils, VaryingWeightsAreFarsOnEveryCage) {
-    for (std::string const& file : test::ListData("opensubdiv_shapes")) {
-        auto const scene = test::LoadData("opensubdiv_shapes/" + file);
+    for (std::string const& shape : test::ListShapes()) {
+        auto const scene = test::LoadShape(shape);
         for (int level = 1; level <= 3; ++level) {
             if (scene.cage.GetNumFaces() << (2 * level) > 20000) break;
-            ExpectFarsWeights(*Refine(scene.cage, level), Mode::Varying,
-                              fmt::format("{} level {}", file, level));
+            ExpectFarsWeights(*RefineUniformly(scene.cage, level), Mode::Varying,
+                              fmt::format("{} level {}", shape, level));
         }
     }
 }
 
 TEST(RefinedStencils, FaceVaryingWeightsAreFarsOnEveryCageAndRule) {
-    for (std::string const& file : test::ListData("opensubdiv_shapes")) {
-        auto scene = test::LoadData("opensubdiv_shapes/" + file);
+    for (std::string const& shape : test::ListShapes()) {
+        auto scene = test::LoadShape(shape);
         if (scene.cage.fvarChannels.empty()) continue;
         for (int rule = 0; rule <= Sdc::Options::FVAR_LINEAR_ALL; ++rule) {
             scene.cage.options.SetFVarLinearInterpolation(
                 static_cast<Sdc::Options::FVarLinearInterpolation>(rule));
             for (int level = 1; level <= 3; ++level) {
                 if (scene.cage.GetNumFaces() << (2 * level) > 20000) break;
-                ExpectFarsWeights(*Refine(scene.cage, level), Mode::FaceVarying,
-                                  fmt::format("{} level {} rule {}", file, level, rule));
+                ExpectFarsWeights(*RefineUniformly(scene.cage, level), Mode::FaceVarying,
+                                  fmt::format("{} level {} rule {}", shape, level, rule));
             }
         }
     }
@@ -133,16 +113,17 @@ TEST(RefinedStencils, FaceVaryingWeightsAreFarsWhereACutEnds) {
     for (int rule = 0; rule <= Sdc::Options::FVAR_LINEAR_ALL; ++rule) {
         scene.cage.options.SetFVarLinearInterpolation(
             static_cast<Sdc::Options::FVarLinearInterpolation>(rule));
-        ExpectFarsWeights(*Refine(scene.cage, 3), Mode::FaceVarying, fmt::format("rule {}", rule));
+        ExpectFarsWeights(*RefineUniformly(scene.cage, 3), Mode::FaceVarying,
+                          fmt::format("rule {}", rule));
     }
 }
 
 TEST(RefinedStencils, BoundaryRulesAreFars) {
-    auto scene = test::LoadData("opensubdiv_shapes/catmark_edgeonly.obj");
+    auto scene = test::LoadShape("catmark_edgeonly");
     for (auto rule : {Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY,
                       Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER}) {
         scene.cage.options.SetVtxBoundaryInterpolation(rule);
-        ExpectFarsWeights(*Refine(scene.cage, 3), Mode::Vertex,
+        ExpectFarsWeights(*RefineUniformly(scene.cage, 3), Mode::Vertex,
                           fmt::format("boundary rule {}", static_cast<int>(rule)));
     }
 }
@@ -154,19 +135,19 @@ TEST(RefinedStencils, WeightsAreFarsWhereNoTwoFacesAreAlike) {
         scene.cage.creaseVertexPairs.insert(scene.cage.creaseVertexPairs.end(), {v, v + 1});
         scene.cage.creaseSharpness.push_back(0.001f * static_cast<float>(v + 1));
     }
-    ExpectFarsWeights(*Refine(scene.cage, 2), Mode::Vertex, "a crease of its own at every face",
-                      1e-6);
+    ExpectFarsWeights(*RefineUniformly(scene.cage, 2), Mode::Vertex,
+                      "a crease of its own at every face", 1e-6);
 }
 
 TEST(RefinedStencils, UnusedVerticesStay) {
     auto scene = test::MakeCube();
     scene.cage.numVertices = 10;  // two more that no face uses
-    ExpectFarsWeights(*Refine(scene.cage, 2), Mode::Vertex, "cube and two vertices");
+    ExpectFarsWeights(*RefineUniformly(scene.cage, 2), Mode::Vertex, "cube and two vertices");
 }
 
 TEST(RefinedStencils, RowsSumToOneAndTorusIsSmall) {
     auto const scene = test::MakeTorus(24, 16);
-    auto const table = BuildRefinedStencils(*Refine(scene.cage, 4));
+    auto const table = BuildRefinedStencils(*RefineUniformly(scene.cage, 4));
     // 24 * 16 faces, 256 points each; Far's table takes 141 bytes per point.
     EXPECT_EQ(table.numRows, 24 * 16 * 256);
     EXPECT_LE(table.blocks.size(), 16u);
@@ -180,7 +161,8 @@ TEST(RefinedStencils, RowsSumToOneAndTorusIsSmall) {
 TEST(RefinedStencils, WhatCannotBeBuiltIsRefused) {
     auto const cube = test::MakeCube();
     EXPECT_THROW(BuildRefinedStencils(*CreateRefiner(cube.cage)), Error);
-    EXPECT_THROW(BuildRefinedStencils(*Refine(cube.cage, 2), {Mode::FaceVarying, 0}), Error);
+    EXPECT_THROW(BuildRefinedStencils(*RefineUniformly(cube.cage, 2), {Mode::FaceVarying, 0}),
+                 Error);
     auto const adaptive = CreateRefiner(cube.cage);
     adaptive->RefineAdaptive(Far::TopologyRefiner::AdaptiveOptions(2));
     EXPECT_THROW(BuildRefinedStencils(*adaptive), Error);

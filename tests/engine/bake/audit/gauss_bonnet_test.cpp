@@ -121,7 +121,7 @@ TEST(GaussBonnet, WithDiscsTheSumConvergesQuadratically) {
 // spot has triangles and pentagons among its quads, whose centres are extraordinary, and seams
 // through them.
 TEST(GaussBonnet, SpotGainsByDiscs) {
-    Scene const spot = test::LoadData("../../scenes/spot/spot.obj");
+    Scene const spot = test::LoadSpot();
     double apart = 0.0, alone = 0.0;
     for (int size : {500, 600, 700}) {
         auto const audit = AuditOf(spot, size);
@@ -223,7 +223,7 @@ TEST_F(DiscsOf, TheShareOfTexelsRisesFromTheVertex) {
 }
 
 TEST(GaussBonnet, IsTheSameForAnyNumberOfThreads) {
-    Scene const spot = test::LoadData("../../scenes/spot/spot.obj");
+    Scene const spot = test::LoadSpot();
     auto const many = AuditOf(spot, 300);
     tbb::global_control const one(tbb::global_control::max_allowed_parallelism, 1);
     auto const single = AuditOf(spot, 300);

@@ -47,7 +47,7 @@ void ExpectSameInCompany(engine::Scene scene) {
 }
 
 TEST(MapsInCompany, AreTheSameOnQuads) {
-    ExpectSameInCompany(test::LoadData("../../scenes/spot/spot.obj"));
+    ExpectSameInCompany(test::LoadSpot());
 }
 
 TEST(MapsInCompany, AreTheSameOnTriangles) {

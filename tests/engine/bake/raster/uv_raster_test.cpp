@@ -138,7 +138,7 @@ class UVRasterOnMesh : public testing::TestWithParam<char const*> {};
 // every inner edge, so that no texel within a chart stays empty. Coverage by a finer dicing would
 // be the same.
 TEST_P(UVRasterOnMesh, HitsMapToTexelCentres) {
-    auto const scene = test::LoadData(std::string("opensubdiv_shapes/") + GetParam());
+    auto const scene = test::LoadShape(GetParam());
     ASSERT_TRUE(scene.HasUVs());
     auto const covering = CoverAndCheck(scene, 96);
     EXPECT_GT(covering.numHits, 0u);
@@ -146,20 +146,17 @@ TEST_P(UVRasterOnMesh, HitsMapToTexelCentres) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cages, UVRasterOnMesh,
-                         testing::Values("catmark_fvar_bound0.obj", "catmark_fvar_bound2.obj",
-                                         "catmark_helmet.obj", "catmark_nonquads.obj",
-                                         "catmark_torus_creases0.obj", "catmark_car.obj"),
-                         [](testing::TestParamInfo<char const*> const& mesh) {
-                             std::string const name = mesh.param;
-                             return name.substr(0, name.find('.'));
-                         });
+                         testing::Values("catmark_fvar_bound0", "catmark_fvar_bound2",
+                                         "catmark_helmet", "catmark_nonquads",
+                                         "catmark_torus_creases0", "catmark_car"),
+                         [](auto const& mesh) { return std::string(mesh.param); });
 
 TEST(UVRaster, EveryFaceVaryingRuleIsInverted) {
     for (auto rule :
          {Sdc::Options::FVAR_LINEAR_NONE, Sdc::Options::FVAR_LINEAR_CORNERS_ONLY,
           Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1, Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2,
           Sdc::Options::FVAR_LINEAR_BOUNDARIES, Sdc::Options::FVAR_LINEAR_ALL}) {
-        engine::Scene scene = test::LoadData("opensubdiv_shapes/catmark_fvar_bound0.obj");
+        engine::Scene scene = test::LoadShape("catmark_fvar_bound0");
         scene.cage.options.SetFVarLinearInterpolation(rule);
         EXPECT_GT(CoverAndCheck(scene, 48).numHits, 100u) << static_cast<int>(rule);
     }
@@ -168,8 +165,7 @@ TEST(UVRaster, EveryFaceVaryingRuleIsInverted) {
 // Spot's chart interiors have no gaps: a covered texel's four neighbours are covered unless the
 // chart ends there, which shows as an uncovered run at least two texels long in that direction.
 TEST(UVRaster, ChartsOfARealAssetHaveNoPinholes) {
-    auto const scene = engine::Scene(test::LoadData("../../scenes/spot/spot.obj"));
-    auto const covering = CoverAndCheck(scene, 256);
+    auto const covering = CoverAndCheck(test::LoadSpot(), 256);
     auto const isCovered = [&](int x, int y) {
         return covering.strip.owner[static_cast<size_t>(y * 256 + x)] >= 0;
     };
@@ -181,6 +177,7 @@ TEST(UVRaster, ChartsOfARealAssetHaveNoPinholes) {
         }
     }
     EXPECT_EQ(pinholes, 0u);
+    EXPECT_GT(covering.numHits, 256u * 256u / 4);
 }
 
 // The square's UVs scaled by zero in one direction: no area, no texel, no endless search.

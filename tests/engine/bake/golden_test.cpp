@@ -44,7 +44,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(GoldenBake, IsWhatItWas) {
     auto const& [map, channels, tolerance, isLine] = GetParam();
     test::TemporaryFolder const folder;
-    engine::Scene const spot = test::LoadData("../../scenes/spot/spot.obj");
+    engine::Scene const spot = test::LoadSpot();
     engine::BakeOptions options;
     options.pattern = folder / "now.exr";
     options.maps = {map};

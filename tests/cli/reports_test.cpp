@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Reports and progress.
+
+#include <algorithm>
+#include <map>
+#include <regex>
+
+#include <gtest/gtest.h>
+
+#include "engine/io/file.h"
+#include "support/cli.h"
+
+namespace limn {
+namespace {
+
+using namespace test::cli;
+
+/// A short run of every verb on the mesh; those with an -o write to out.* in the folder.
+std::map<std::string, Words> MakeRuns(std::string const& mesh, std::string const& places,
+                                      std::string const& folder) {
+    auto const out = [&](char const* ending) { return folder + "/out" + ending; };
+    return {{"info", {"info", mesh}},
+            {"eval", {"eval", mesh, "--at", places}},
+            {"measure", {"measure", mesh}},
+            {"bake", {"bake", mesh, "-o", out(".exr"), "--maps", "mean", "--size", "32"}},
+            {"refine", {"refine", mesh, "-o", out(".obj")}},
+            {"fit", {"fit", mesh, "-o", out(".obj")}},
+            {"bands", {"bands", mesh, "-o", out(""), "--count", "2"}},
+            {"denoise", {"denoise", mesh, "-o", out(".obj")}},
+            {"sharpen", {"sharpen", mesh, "-o", out(".obj")}},
+            {"morph", {"morph", mesh, mesh, "-o", out(""), "--steps", "2"}},
+            {"smooth", {"smooth", mesh, "-o", out(".obj"), "--levels", "1"}},
+            {"field", {"field", mesh, "-o", out(".obj"), "--source", "0", "--sink", "7"}}};
+}
+
+class Reports : public Cli {
+protected:
+    std::string const mesh = Shape("catmark_torus");
+    std::map<std::string, Words> const runs =
+        MakeRuns(mesh, folder.Write("p.csv", "face,s,t\n0,0.5,0.5\n"), folder.GetPath());
+};
+
+TEST_F(Reports, OfEveryVerbHaveTheSharedKeys) {
+    Words verbs = ListVerbs(), known;
+    for (auto const& [verb, words] : runs) known.push_back(verb);
+    std::sort(verbs.begin(), verbs.end());
+    EXPECT_EQ(verbs, known);
+    for (auto const& [verb, words] : runs) {
+        SCOPED_TRACE(verb);
+        Outcome const outcome = Limn(words + Words{"--report", folder / "r.json"});
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        json const report = Report();
+        EXPECT_TRUE(report["limn_version"].is_string());
+        EXPECT_EQ(report["command"], verb);
+        EXPECT_TRUE(report.contains("options"));
+        EXPECT_EQ(report["inputs"][0]["path"], mesh);
+        EXPECT_EQ(report["inputs"][0]["sha256"], engine::Sha256OfFile(mesh));
+        EXPECT_TRUE(report["warnings"].is_array());
+        EXPECT_GE(report["seconds"].get<double>(), 0.0);
+    }
+}
+
+TEST_F(Reports, GoToStdoutWhereTheVerbWritesFilesOnly) {
+    for (auto const& [verb, words] : runs) {
+        Outcome const outcome = Limn(words + Words{"--report", "-"});
+        bool const writesFiles = std::find(words.begin(), words.end(), "-o") != words.end();
+        if (!writesFiles) {
+            ExpectError(outcome, 2, "--report -: stdout already carries the data");
+            continue;
+        }
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        EXPECT_EQ(json::parse(outcome.out)["command"], verb);
+    }
+}
+
+TEST_F(Cli, BakeReportHasItsKeys) {
+    ASSERT_EQ(Bake(Shape("catmark_cube"), "{map}.exr",
+                   {"--maps", "mean,normal", "--size", "64x32", "--report", folder / "r.json"})
+                  .status,
+              0);
+    json const report = Report();
+    for (char const* key : {"texels_covered", "overlaps", "newton_failures", "moved_samples",
+                            "degenerate_samples", "clamped"}) {
+        EXPECT_TRUE(report[key].is_number_integer()) << key;
+    }
+    EXPECT_GT(report["texels_covered"], 0);
+    EXPECT_EQ(report["newton_failures"], 0);
+    EXPECT_EQ(report["tiles"], json({1001}));
+    ASSERT_EQ(report["outputs"].size(), 2u);
+    for (json const& output : report["outputs"]) {
+        std::string const file = output["file"];
+        EXPECT_EQ(output["sha256"], engine::Sha256OfFile(file));
+        EXPECT_EQ(output["width"], 64);
+        EXPECT_EQ(output["height"], 32);
+        EXPECT_EQ(output["tile"], 1001);
+        EXPECT_LE(output["min"].get<double>(), output["max"].get<double>());
+    }
+    EXPECT_EQ(report["outputs"][0]["map"], "mean");
+    EXPECT_EQ(report["outputs"][1]["file"], folder / "normal.exr");
+}
+
+TEST_F(Cli, ReportHoldsTheWarningsEvenWhenQuiet) {
+    std::string const mesh =
+        folder.Write("m.obj", test::ReadText(Shape("catmark_cube")) + "t vertexedit 1/1/1 0 0 x\n");
+    Outcome const outcome = Bake(mesh, "a.exr", {"--report", folder / "r.json"});
+    EXPECT_TRUE(outcome.err.empty()) << outcome.err;
+    std::string const warnings = Report()["warnings"].dump();
+    EXPECT_TRUE(Contains(warnings, "vertexedit")) << warnings;
+}
+
+// A bake of a second; shorter ones have nothing to say.
+TEST_F(Cli, ProgressWithoutATerminalIsWholeLines) {
+    Outcome const outcome =
+        Limn({"bake", Shape("catmark_cube"), "-o", folder / "{map}.exr", "--maps", "mean", "--size",
+              "1024", "--samples", "8", "--threads", "1"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(outcome.out.empty());
+    auto const lines = Lines(outcome.err);
+    ASSERT_FALSE(lines.empty());
+    for (std::string const& line : lines)
+        EXPECT_TRUE(std::regex_match(line, std::regex("limn: .*: [0-9]+ %, [^\r]*"))) << line;
+    EXPECT_TRUE(Contains(lines.back(), "100 %")) << lines.back();
+}
+
+}  // namespace
+}  // namespace limn

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/images/exr_writer.h"
+
+#include <filesystem>
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfTiledInputFile.h>
+#include <gtest/gtest.h>
+
+#include "support/files.h"
+
+namespace limn {
+namespace {
+
+using namespace engine;  // what is tested here is all of one namespace
+
+struct WriterCase {
+    ExrCompression compression;
+    bool isHalf, hasMips;
+};
+class ExrWriterAs : public testing::TestWithParam<WriterCase> {};
+INSTANTIATE_TEST_SUITE_P(Kinds, ExrWriterAs,
+                         testing::Values(WriterCase{ExrCompression::Zip, true, false},
+                                         WriterCase{ExrCompression::Zip, false, true},
+                                         WriterCase{ExrCompression::Zips, false, false},
+                                         WriterCase{ExrCompression::None, true, true},
+                                         WriterCase{ExrCompression::Rle, true, false},
+                                         WriterCase{ExrCompression::Piz, false, true},
+                                         WriterCase{ExrCompression::Dwaa, true, false}));
+
+// What is packed is what OpenEXR's own reader finds, on every level, at sizes that are no multiple
+// of a tile.
+TEST_P(ExrWriterAs, ReadsBackThroughOpenExr) {
+    ExrSpec spec;
+    spec.width = 150;
+    spec.height = 70;
+    spec.isHalf = GetParam().isHalf;
+    spec.hasMips = GetParam().hasMips;
+    spec.compression = GetParam().compression;
+    spec.channels = {"R", "G", "B"};  // the file has them as B, G, R
+    spec.attributes = {{"limn:map", "test"}};
+    test::TemporaryFolder const folder;
+    std::string const path = folder / "a.exr";
+    auto const value = [](int level, int c, int x, int y) {
+        return 0.25f * static_cast<float>(level + c) + 0.001f * static_cast<float>(x - 2 * y);
+    };
+    {
+        ExrWriter writer(path, spec);
+        EXPECT_FALSE(std::filesystem::exists(path));  // not before it is complete
+        for (int level = 0; level < spec.GetNumLevels(); ++level) {
+            int const w = spec.GetLevelWidth(level), h = spec.GetLevelHeight(level);
+            std::vector<std::vector<float>> planes(3);
+            for (int c = 0; c < 3; ++c) {
+                for (int y = 0; y < h; ++y) {
+                    for (int x = 0; x < w; ++x)
+                        planes[static_cast<size_t>(c)].push_back(value(level, c, x, y));
+                }
+            }
+            for (int ty = 0; ty * 64 < h; ++ty) {
+                for (int tx = 0; tx * 64 < w; ++tx) {
+                    float const* tile[3];
+                    for (size_t c = 0; c < 3; ++c)
+                        tile[c] = &planes[c][static_cast<size_t>(ty * 64 * w + tx * 64)];
+                    writer.Write(writer.Pack(level, tx, ty, tile, static_cast<size_t>(w)));
+                }
+            }
+        }
+        writer.Commit();
+    }
+    Imf::TiledInputFile input(path.c_str());
+    EXPECT_EQ(input.numLevels(), spec.GetNumLevels());
+    EXPECT_EQ(input.header().lineOrder(), Imf::RANDOM_Y);
+    double const tolerance = GetParam().compression == ExrCompression::Dwaa ? 0.02
+                             : spec.isHalf                                  ? 1e-3
+                                                                            : 0.0;
+    for (int level = 0; level < spec.GetNumLevels(); ++level) {
+        int const w = input.levelWidth(level), h = input.levelHeight(level);
+        std::vector<float> pixels(static_cast<size_t>(3 * w * h));
+        Imf::FrameBuffer buffer;
+        char const* const names[3] = {"R", "G", "B"};
+        for (size_t c = 0; c < 3; ++c) {
+            buffer.insert(names[c],
+                          Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels.data() + c), 12,
+                                     12 * static_cast<size_t>(w)));
+        }
+        input.setFrameBuffer(buffer);
+        input.readTiles(0, input.numXTiles(level) - 1, 0, input.numYTiles(level) - 1, level);
+        for (int y = 0; y < h; ++y) {
+            for (int x = 0; x < w; ++x) {
+                for (int c = 0; c < 3; ++c) {
+                    ASSERT_NEAR(pixels[static_cast<size_t>(3 * (y * w + x) + c)],
+                                value(level, c, x, y), tolerance);
+                }
+            }
+        }
+    }
+    auto const attributes = ReadExrAttributes(path, "limn:");
+    ASSERT_EQ(attributes.size(), 1u);
+    EXPECT_EQ(attributes[0].second, "test");
+}
+
+TEST(ExrWriter, LeavesNothingWhenItIsAbandoned) {
+    test::TemporaryFolder const folder;
+    ExrSpec spec;
+    spec.width = spec.height = 64;
+    spec.channels = {"Y"};
+    {
+        ExrWriter writer(folder / "a.exr", spec);
+        std::vector<float> const plane(64 * 64, 0.5f);
+        float const* const tile = plane.data();
+        writer.Write(writer.Pack(0, 0, 0, &tile, 64));
+        EXPECT_EQ(folder.List().size(), 1u);
+    }
+    EXPECT_TRUE(folder.List().empty());
+}
+
+}  // namespace
+}  // namespace limn
