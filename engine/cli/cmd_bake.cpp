@@ -21,7 +21,7 @@ namespace {
 
 struct BakeArguments {
     std::vector<std::string> meshes, tiles;
-    std::string size = "2048", compression = "zip", against, fieldPath, encode, noiseRamp;
+    std::string size = "2048", compression = "zip", against, rest, fieldPath, encode, noiseRamp;
     bool hasAudit = false;
     double auditBound = 1e-3;
     engine::BakeOptions options;
@@ -157,6 +157,7 @@ int Run(BakeArguments const& a, Context& context) {
         if (!a.against.empty()) {
             options.against = engine::Model::Build(context.Load(a.against).scene);
         }
+        if (!a.rest.empty()) options.rest = engine::Model::Build(context.Load(a.rest).scene);
         auto const report = engine::Bake(model, options, context.GetJob());
         AddToReport(context.GetReport(), report);
         if (!a.hasAudit) continue;
@@ -199,6 +200,7 @@ Verb AddBake(CLI::App& app) {
     verb->add_flag("--preview", a->options.hasPreview, "also a PNG to look at");
     verb->add_option("--encode", a->encode, "S,O: write value * S + O");
     verb->add_option("--against", a->against, "the mesh that displacement leads to");
+    verb->add_option("--rest", a->rest, "of the map tension: the mesh before it was posed");
     verb->add_option("--bands", a->options.bands,
                      "of the map bands: frequency bands, their smooth base included (default 4)")
         ->check(CLI::Range(1, 64));

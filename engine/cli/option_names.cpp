@@ -29,6 +29,7 @@ constexpr OptionName kOptionNames[] = {
     {"path", "-o"},
     {"precision", "--precision"},
     {"refinement", "--refinement"},
+    {"rest", "--rest"},
     {"scheme", "--scheme"},
     {"size", "--size"},
     {"solver", "--solver"},

@@ -120,6 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
         Usage{"EncodeNan", BakeWith({"--maps", "mean", "--encode", "nan,0"}), "--encode"},
         Usage{"UnknownSpace", BakeWith({"--maps", "mean", "--space", "outer"}), "--space"},
         Usage{"DisplacementOfNothing", BakeWith({"--maps", "displacement"}), "--against"},
+        Usage{"TensionOfNothing", BakeWith({"--maps", "tension"}), "--rest"},
         Usage{"SeveralMeshesOneName",
               {"bake", "MESH", "MESH", "-o", "OUT/a.exr", "--maps", "mean"},
               "{mesh}"},

@@ -16,15 +16,18 @@ engine::Model MakeModelWithColours() {
 
 engine::BakeOptions OptionsForAllMaps(engine::Model const& model) {
     engine::BakeOptions options;
-    options.maps = {"mean",         "gaussian",     "k1",
-                    "k2",           "curvedness",   "shape-index",
-                    "curvature",    "position",     "principal-direction",
-                    "normal",       "displacement", "stretch",
-                    "bands",        "noise",        "field",
-                    "primvar:color"};
+    options.maps = {"mean",      "gaussian",     "k1",
+                    "k2",        "curvedness",   "shape-index",
+                    "curvature", "position",     "principal-direction",
+                    "normal",    "displacement", "stretch",
+                    "tension",   "bands",        "noise",
+                    "field",     "primvar:color"};
     std::vector<double> swollen = model.GetPositions();
     for (double& x : swollen) x *= 1.25;
     options.against = model.WithPoints(std::move(swollen));
+    std::vector<double> sheared = model.GetPositions();
+    for (size_t i = 0; i < sheared.size(); i += 3) sheared[i] += 0.3 * sheared[i + 1];
+    options.rest = model.WithPoints(std::move(sheared));
     options.field.emplace();
     options.field->values.assign(static_cast<size_t>(model.GetLevel().GetNumEdges()), 0.0);
     for (size_t edge = 0; edge < options.field->values.size(); ++edge) {

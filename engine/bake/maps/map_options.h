@@ -29,6 +29,7 @@ struct EdgeField {
 struct MapOptions {
     std::vector<std::string> maps;        ///< names, as ListMapNames has them
     std::optional<Model> against;         ///< of the map displacement: the mesh it leads to
+    std::optional<Model> rest;            ///< of the map tension: the mesh before it was posed
     std::optional<EdgeField> field;       ///< of the map field
     NoiseOptions noise;                   ///< of the map noise
     std::optional<ColourRamp> noiseRamp;  ///< noise as colours

@@ -32,6 +32,7 @@ std::unique_ptr<Map> MakeStretchMap(std::string const&, MapOptions const&, Model
 std::unique_ptr<Map> MakeBandsMap(std::string const&, MapOptions const&, Model const&);
 std::unique_ptr<Map> MakeNoiseMap(std::string const&, MapOptions const&, Model const&);
 std::unique_ptr<Map> MakeFieldMap(std::string const&, MapOptions const&, Model const&);
+std::unique_ptr<Map> MakeTensionMap(std::string const&, MapOptions const&, Model const&);
 std::unique_ptr<Map> MakePrimvarMap(std::string const&, MapOptions const&, Model const&);
 
 }  // namespace limn::engine

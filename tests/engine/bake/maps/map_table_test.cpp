@@ -65,7 +65,7 @@ TEST(MapTable, AnUnknownNameIsAnsweredWithTheNamesThereAre) {
 }
 
 TEST(MapTable, NothingAMapNeedsMayBeMissing) {
-    for (char const* name : {"displacement", "field", "primvar:none"}) {
+    for (char const* name : {"displacement", "tension", "field", "primvar:none"}) {
         engine::BakeOptions options;
         options.maps = {name};
         EXPECT_THROW(MakeAll(options), Error) << name;
