@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/cli/console.h"
+#include "engine/cli/run_command.h"
 #include "engine/io/file.h"
 #include "engine/scene/job.h"
 #include "engine/scene/scene.h"
@@ -33,7 +34,8 @@ struct CommonOptions {
 /// What a verb runs with: its job, and the report it fills.
 class Context {
 public:
-    Context(CommonOptions const& common, std::string command, std::vector<std::string> arguments);
+    Context(CommonOptions const& common, std::string command, std::vector<std::string> arguments,
+            engine::MeshSource& meshes, std::function<bool()> isStopped);
 
     CommonOptions const& GetCommon() const { return _common; }
     engine::Job& GetJob() { return _job; }
@@ -61,6 +63,7 @@ public:
 
 private:
     CommonOptions const& _common;
+    engine::MeshSource& _meshes;
     Console _console;
     engine::Job _job;
     nlohmann::json _report;
@@ -89,8 +92,5 @@ Verb AddMorph(CLI::App& app);
 Verb AddRefine(CLI::App& app);
 Verb AddSharpen(CLI::App& app);
 Verb AddSmooth(CLI::App& app);
-
-/// Exit statuses that are not failures of the program.
-inline constexpr int kDone = 0, kNotReached = 4;
 
 }  // namespace limn::cli

@@ -3,18 +3,18 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "engine/cli/option_names.h"
-#include "engine/cli/signals.h"
 
 namespace limn::cli {
 
 using engine::Progress;
 
-engine::JobHost Console::MakeHost() {
-    engine::JobHost host{.isStopped = [] { return GetSignal() != 0; }};
+engine::JobHost Console::MakeHost(std::function<bool()> isStopped) {
+    engine::JobHost host{.isStopped = std::move(isStopped)};
     if (_style != Style::None) {
         host.onProgress = [this](Progress const& progress) { OnProgress(progress); };
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -19,8 +20,8 @@ public:
     Console(Console const&) = delete;
     Console& operator=(Console const&) = delete;
 
-    /// Hears for one job, which must not outlive it; stops it once a signal has come.
-    engine::JobHost MakeHost();
+    /// Hears for one job, which must not outlive it.
+    engine::JobHost MakeHost(std::function<bool()> isStopped);
 
 private:
     using Clock = std::chrono::steady_clock;

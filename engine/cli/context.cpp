@@ -8,7 +8,6 @@
 #include "engine/cli/cli.h"
 #include "engine/cli/option_names.h"
 #include "engine/io/file.h"
-#include "engine/io/mesh_reader.h"
 #include "engine/scene/defects.h"
 #include "engine/scene/subdivision_names.h"
 #include "engine/version.h"
@@ -41,10 +40,12 @@ void ApplyOptions(CommonOptions const& common, Scene& scene) {
 }  // namespace
 
 Context::Context(CommonOptions const& common, std::string command,
-                 std::vector<std::string> arguments)
+                 std::vector<std::string> arguments, engine::MeshSource& meshes,
+                 std::function<bool()> isStopped)
     : _common(common),
+      _meshes(meshes),
       _console(ChooseStyle(common), common.isQuiet),
-      _job(_console.MakeHost()),
+      _job(_console.MakeHost(std::move(isStopped))),
       _start(std::chrono::steady_clock::now()) {
     // Opened before the work, so that a report that cannot be written is known before there is
     // output.
@@ -58,7 +59,7 @@ Context::Context(CommonOptions const& common, std::string command,
 }
 
 Context::Mesh Context::Load(std::string const& path, Defects defects) {
-    Scene scene = engine::ReadMesh(path);
+    Scene scene = _meshes.Read(path);
     ApplyOptions(_common, scene);
     for (std::string const& warning : scene.warnings) _job.Warn(warning);
     std::unique_ptr<Far::TopologyRefiner> refiner;
