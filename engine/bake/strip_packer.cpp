@@ -67,16 +67,17 @@ void PadStrip(std::span<std::shared_ptr<Strip> const> window, Strip& strip, int 
     strip.isFilled = strip.isCovered;
     Padder const padder(window, strip, padding);
     if (!padder.HasWork()) return;
-    constexpr int kTile = ExrSpec::kTileSize;
+    constexpr int tileSize = ExrSpec::kTileSize;
     int const width = strip.texels.width;
-    tbb::parallel_for(
-        tbb::blocked_range<int>(0, (width + kTile - 1) / kTile), [&](auto const& tiles) {
-            job.CheckStopped();
-            PaddingSearch search(padder.GetCoverage(), padding);
-            for (int tile = tiles.begin(); tile != tiles.end(); ++tile) {
-                padder.PadTile(search, tile * kTile, std::min(kTile, width - tile * kTile));
-            }
-        });
+    tbb::parallel_for(tbb::blocked_range<int>(0, (width + tileSize - 1) / tileSize),
+                      [&](auto const& tiles) {
+                          job.CheckStopped();
+                          PaddingSearch search(padder.GetCoverage(), padding);
+                          for (int tile = tiles.begin(); tile != tiles.end(); ++tile) {
+                              padder.PadTile(search, tile * tileSize,
+                                             std::min(tileSize, width - tile * tileSize));
+                          }
+                      });
 }
 
 }  // namespace

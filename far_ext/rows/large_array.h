@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 #include <utility>
@@ -26,6 +27,7 @@ public:
     LargeArrayAllocator(LargeArrayAllocator<U> const&) noexcept {}
 
     T* allocate(std::size_t count) {
+        if (count > kMostBytes / sizeof(T)) throw std::bad_alloc();
         std::size_t const size = (count * sizeof(T) + kPage - 1) / kPage * kPage;
         if (!IsLarge(count))
             return static_cast<T*>(::operator new(count * sizeof(T), std::align_val_t(kLine)));
@@ -57,6 +59,7 @@ public:
 
 private:
     static constexpr std::size_t kLine = 64, kPage = std::size_t{2} << 20;
+    static constexpr std::size_t kMostBytes = PTRDIFF_MAX - kPage;
     static bool IsLarge(std::size_t count) { return count * sizeof(T) >= kPage; }
 };
 
