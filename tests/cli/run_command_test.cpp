@@ -130,8 +130,9 @@ TEST(RunCommand, ItStopsWhenAskedToAndLeavesNothing) {
     test::TemporaryFolder const folder;
     std::atomic<bool> isStopped{false};
     CubeSource cubes([&] { isStopped = true; });
-    auto const answer = Hear({"smooth", "cube", "-o", folder / "x.obj", "--levels", "3"}, cubes,
-                             [&] { return isStopped.load(); });
+    auto const answer =
+        Hear({"bake", "cube", "-o", folder / "x.exr", "--maps", "mean", "--size", "64"}, cubes,
+             [&] { return isStopped.load(); });
     EXPECT_EQ(answer.status, kStopped);
     EXPECT_EQ(answer.err, "limn: error: interrupted; nothing half-written is left\n");
     EXPECT_TRUE(folder.List().empty());
