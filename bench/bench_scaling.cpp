@@ -50,7 +50,7 @@ double EvaluateFaces(Case const& subject) {
     constexpr std::array<double, 4> kS{0.25, 0.75, 0.25, 0.75}, kT{0.25, 0.25, 0.75, 0.75};
     eval::LimitSurface const surface(*subject.refiner);
     eval::FaceTree tree(surface, subject.scene.positions, 3);
-    eval::SurfaceSampler sampler(tree, eval::Quantity::Curvature, 1.0f);
+    eval::SurfaceSampler sampler(tree, eval::Quantity::Curvature, Orientation::Right);
     double sum = 0.0;
     for (Index face = 0; face < surface.GetNumFaces(); ++face) {
         sampler.Bind(face);

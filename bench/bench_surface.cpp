@@ -87,7 +87,7 @@ struct Subject {
     template <class Visit>
     void VisitBlocks(Visit const& visit) {
         FaceTree tree(surface, scene.positions, 3);
-        eval::SurfaceSampler sampler(tree, eval::Quantity::Curvature, 1.0f);
+        eval::SurfaceSampler sampler(tree, eval::Quantity::Curvature, Orientation::Right);
         for (Index face = 0; face < scene.cage.GetNumFaces(); ++face) {
             sampler.Bind(face);
             size_t const first = samples.first[face];
@@ -166,7 +166,7 @@ struct PeerErrors {
                 if (k >= 3) second.Add(d[k][c], truth[c][k]);
             }
         }
-        mean.Add(eval::ComputeCurvature(d[1], d[2], d[3], d[4], d[5], 1.0).mean, trueMean);
+        mean.Add(eval::ComputeCurvature(d[1], d[2], d[3], d[4], d[5]).mean, trueMean);
     }
 };
 
@@ -220,7 +220,7 @@ Errors FindErrors(Subject const& subject) {
         for (size_t i = (samples.first[face] + step - 1) / step * step; i < samples.first[face + 1];
              i += step) {
             double const s = samples.s[i], t = samples.t[i];
-            eval::SurfaceSample const truth = eval::EvaluateSample(tree, 0, s, t, 1.0);
+            eval::SurfaceSample const truth = eval::EvaluateSample(tree, 0, s, t);
             errors.limn.Add(subject, i, truth);
             eval::PatchPoint const point = tree.Locate(0, s, t, FaceTree::kCurvatureDepth);
             if (point.isMoved) continue;

@@ -40,7 +40,7 @@ std::vector<double> MapByBfr(Far::TopologyRefiner const& refiner,
             Eigen::Vector3d p, s, t, ss, sT, tt;
             surface->Evaluate(st, points.data(), {3}, p.data(), s.data(), t.data(), ss.data(),
                               sT.data(), tt.data());
-            map.push_back(eval::ComputeCurvature(s, t, ss, sT, tt, 1.0).mean);
+            map.push_back(eval::ComputeCurvature(s, t, ss, sT, tt).mean);
         }
     }
     return map;
@@ -50,7 +50,7 @@ std::vector<double> MapByLimn(Far::TopologyRefiner const& refiner,
                               std::vector<double> const& positions) {
     eval::LimitSurface const surface(refiner);
     eval::FaceTree tree(surface, positions, 3);
-    eval::SurfaceSampler sampler(tree, eval::Quantity::Curvature, 1.0f);
+    eval::SurfaceSampler sampler(tree, eval::Quantity::Curvature, Orientation::Right);
     std::vector<double> s, t, map(kSize * kSize);
     for (int y = 0; y < kSize; ++y) {
         for (int x = 0; x < kSize; ++x) {

@@ -19,7 +19,7 @@ struct BakeOptions : MapOptions {
     bool isHalf = false, hasMips = false, hasCoverage = false;
     ExrCompression compression = ExrCompression::Zip;
     std::vector<std::string> groups;  ///< only faces of these; empty for all
-    bool isLeftHanded = false;
+    Orientation orientation = Orientation::Right;
     bool skipsExisting = false;
     bool hasPreview = false;
     bool wantsChecksums = false;  ///< fill BakeOutput::sha256

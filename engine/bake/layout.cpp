@@ -69,7 +69,7 @@ std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, M
         options.height, options.samplesPerSide, options.padding, options.isHalf ? "half" : "float",
         kExrCompressionWords.GetWord(options.compression), options.hasMips, options.hasCoverage);
     text += fmt::format(" {} orientation={}", DescribeSubdivision(model.GetCage()),
-                        options.isLeftHanded ? "left" : "right");
+                        kOrientationWords.GetWord(options.orientation));
     if (!options.groups.empty()) {
         std::set<std::string> const groups(options.groups.begin(), options.groups.end());
         text += fmt::format(" groups={}", fmt::join(groups, ","));

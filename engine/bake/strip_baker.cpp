@@ -45,9 +45,8 @@ struct StripBaker::Worker {
         : tree(baker._surface, baker._values),
           raster(baker._uvSurface, baker._model.GetUVs()),
           averages(baker._groups) {
-        float const orientation = baker._options.isLeftHanded ? -1.0f : 1.0f;
         for (Pass const& pass : baker._passes) {
-            surfaces.emplace_back(tree, pass.quantity, orientation, pass.values);
+            surfaces.emplace_back(tree, pass.quantity, baker._options.orientation, pass.values);
         }
         for (auto const& map : baker._maps) maps.push_back(map->MakeSampler());
     }

@@ -14,21 +14,19 @@
 #include "engine/cli/run_command.h"
 #include "engine/io/file.h"
 #include "engine/scene/job.h"
-#include "engine/scene/scene.h"
-#include "far_ext/topology/refiner.h"
+#include "engine/scene/model.h"
 
 namespace limn::cli {
 
 /// Options every verb shares (docs: "The command line").
 struct CommonOptions {
     std::optional<std::string> scheme, boundary, fvar, creases, triangles;
-    std::string orientation = "right", precision = "float", reportPath;
+    std::string reportPath;
+    Orientation orientation = Orientation::Right;
+    Precision precision = Precision::Float;
     std::optional<Console::Style> progress;  ///< none: what suits stderr
     int numThreads = 0;
     bool isQuiet = false, isVerbose = false;
-
-    bool IsLeftHanded() const { return orientation == "left"; }
-    bool IsDouble() const { return precision == "double"; }
 };
 
 /// What a verb runs with: its job, and the report it fills.
@@ -41,15 +39,13 @@ public:
     engine::Job& GetJob() { return _job; }
     nlohmann::json& GetReport() { return _report; }
 
-    /// A mesh as read, with the subdivision options applied, and its topology.
-    struct Mesh {
-        engine::Scene scene;
-        std::unique_ptr<Far::TopologyRefiner> refiner;
-    };
     enum class Defects { Warn, Keep };
 
-    /// Reads and checks a mesh, and warns of what the reader saw and (unless kept) of its defects.
-    Mesh Load(std::string const& path, Defects defects = Defects::Warn);
+    /// Reads and checks a mesh, with the subdivision options applied, and warns of what the reader
+    /// saw and (unless kept) of its defects.
+    engine::Model Load(std::string const& path, Defects defects = Defects::Warn);
+
+    void Warn(std::vector<std::string> const& messages);
 
     /// Fills the keys all reports have and writes the report where it was asked for.
     void WriteReport();
@@ -70,6 +66,11 @@ private:
     std::unique_ptr<engine::AtomicFile> _reportFile;
     std::chrono::steady_clock::time_point _start;
 };
+
+/// The same mesh under another scheme.
+///
+/// \throws Error  BadMesh: faces that the scheme cannot have
+engine::Model WithScheme(engine::Model const& model, Sdc::SchemeType scheme);
 
 /// Writes data to stdout. \throws Error Io, e.g. on a full disk
 void PrintData(std::string const& text);

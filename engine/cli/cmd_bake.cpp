@@ -78,7 +78,7 @@ engine::BakeOptions MakeOptions(BakeArguments const& a, CommonOptions const& com
     ParseSize(a.size, options);
     ParseTiles(a.tiles, options);
     options.compression = engine::kExrCompressionWords.Parse(a.compression);
-    options.isLeftHanded = common.IsLeftHanded();
+    options.orientation = common.orientation;
     options.wantsChecksums = !common.reportPath.empty();
     return options;
 }
@@ -149,15 +149,15 @@ int Run(BakeArguments const& a, Context& context) {
     }
     int status = kDone;
     for (std::string const& path : a.meshes) {
-        auto const model = engine::Model::Build(context.Load(path).scene);
+        auto const model = context.Load(path);
         if (!a.fieldPath.empty()) {
             options.field = {engine::ReadEdgeValues(a.fieldPath, model.GetLevel()),
                              engine::Sha256OfFile(a.fieldPath)};
         }
         if (!a.against.empty()) {
-            options.against = engine::Model::Build(context.Load(a.against).scene);
+            options.against = context.Load(a.against);
         }
-        if (!a.rest.empty()) options.rest = engine::Model::Build(context.Load(a.rest).scene);
+        if (!a.rest.empty()) options.rest = context.Load(a.rest);
         auto const report = engine::Bake(model, options, context.GetJob());
         AddToReport(context.GetReport(), report);
         if (!a.hasAudit) continue;

@@ -10,7 +10,7 @@ Verb AddBands(CLI::App& app) {
     struct BandsArguments {
         std::string mesh, prefix;
         int count = 0;
-        FilterOptions filter;
+        double alpha = 0.0;
     };
     auto const a = std::make_shared<BandsArguments>();
     CLI::App* const verb =
@@ -22,28 +22,29 @@ Verb AddBands(CLI::App& app) {
     verb->add_option("--count", a->count, "number of bands, 1 to 1000")
         ->required()
         ->check(CLI::Range(1, 1000));
-    a->filter.AddTo(*verb);
+    AddAlpha(*verb, a->alpha);
     verb->footer(
         "Example:\n  limn bands scenes/spot/spot.obj -o out/spot --count 4 --precision double");
     return {verb, [a](Context& context) {
-                auto const mesh = context.Load(a->mesh);
-                auto bands = engine::SplitIntoBands(mesh.scene, a->filter.Build(mesh), a->count);
-                context.GetReport()["before"] = DescribeExtent(mesh.scene, mesh);
-                engine::Scene output = mesh.scene;
-                engine::MeshSequence files(context.GetCommon().IsDouble());
+                auto const model = context.Load(a->mesh);
+                auto bands = engine::SplitIntoBands(model, a->count, a->alpha, context.GetJob());
+                context.GetReport()["before"] = DescribeExtent(model, model.GetPositions());
+                engine::Scene output = model.MakeScene();
+                engine::MeshSequence files(context.GetCommon().precision);
                 std::vector<std::string> warnings;
-                for (size_t i = 0; i < bands.size(); ++i) {
-                    std::string const path = i + 1 < bands.size()
-                                                 ? fmt::format("{}.band{}.obj", a->prefix, i)
-                                                 : a->prefix + ".remainder.obj";
-                    output.positions = std::move(bands[i]);
-                    files.Add(path, output, i == 0 ? &warnings : nullptr);
-                    auto entry = DescribeExtent(output, mesh);
+                auto const add = [&](std::string const& path, std::vector<double>& positions) {
+                    output.positions = std::move(positions);
+                    auto const leftOut = files.Add(path, output);
+                    if (warnings.empty()) warnings = leftOut;  // one file speaks for all
+                    auto entry = DescribeExtent(model, output.positions);
                     entry["file"] = path;
                     context.GetReport()["outputs"].push_back(std::move(entry));
-                }
+                };
+                for (size_t i = 0; i < bands.bands.size(); ++i)
+                    add(fmt::format("{}.band{}.obj", a->prefix, i), bands.bands[i]);
+                add(a->prefix + ".remainder.obj", bands.remainder);
                 files.Commit();
-                WarnAll(context, warnings);
+                context.Warn(warnings);
                 return kDone;
             }};
 }

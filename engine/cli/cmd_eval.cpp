@@ -5,6 +5,7 @@
 #include "engine/cli/word_option.h"
 #include "engine/evaluate/evaluate.h"
 #include "engine/evaluate/frames.h"
+#include "engine/evaluate/place_table.h"
 #include "engine/io/file.h"
 
 namespace limn::cli {
@@ -16,20 +17,43 @@ struct EvalArguments {
     std::optional<eval::EvaluatorKind> evaluator;
 };
 
-void EvaluateFrames(EvalArguments const& a, engine::Scene const& scene,
-                    Far::TopologyRefiner const& refiner, engine::PlaceList const& places,
-                    Context& context) {
+void EvaluateFrames(EvalArguments const& a, engine::Model const& model,
+                    engine::PlaceTable const& places, Context& context) {
     CommonOptions const& common = context.GetCommon();
-    engine::FrameOptions const options{a.output, common.IsLeftHanded(), common.IsDouble(),
-                                       a.evaluator};
-    auto const result = engine::EvaluateFrames(
-        scene, refiner, places, a.places, engine::FindFrames(a.frames), options, context.GetJob());
+    engine::FrameOptions const options{a.output, common.orientation, common.precision, a.evaluator};
+    auto const frames = engine::FindFrames(a.frames);
+    auto const result = engine::NamingRows(places, [&] {
+        return engine::EvaluateFrames(model, places.GetPlaces(), frames, options, context.GetJob());
+    });
     auto& report = context.GetReport();
     report["places_without_limit"] = result.numWithoutLimit;
     report["places_in_table"] = result.numRows;
     report["evaluator"] = a.evaluator ? GetName(*a.evaluator) : "double";
     report["frames"] = result.outputs.size();
     report["outputs"] = result.outputs;
+}
+
+int Run(EvalArguments const& a, Context& context) {
+    CommonOptions const& common = context.GetCommon();
+    context.KeepStdoutForData(a.output.empty());
+    auto const model = context.Load(a.mesh);
+    auto const places = engine::ReadPlaces(a.places);
+    context.GetReport()["places"] = places.faces.size();
+    if (!a.frames.empty()) {
+        EvaluateFrames(a, model, places, context);
+        return kDone;
+    }
+    auto const values = engine::NamingRows(places, [&] {
+        return engine::EvaluateLimit(model, places.GetPlaces(), common.orientation,
+                                     context.GetJob());
+    });
+    context.GetReport()["places_without_limit"] = values.CountWithoutLimit();
+    std::string const text = engine::FormatValues(places.GetPlaces(), values, common.precision);
+    if (a.output.empty())
+        PrintData(text);
+    else
+        engine::WriteFileAtomically(a.output, text);
+    return kDone;
 }
 
 }  // namespace
@@ -58,26 +82,7 @@ Verb AddEval(CLI::App& app) {
         "scenes/spot/spot.obj --at places.csv\n"
         "  limn eval walk.0001.obj --at places.csv --frames 'walk.{frame}.obj' -o "
         "'walk.{frame}.csv'");
-    return {verb, [a](Context& context) {
-                context.KeepStdoutForData(a->output.empty());
-                auto const [scene, refiner] = context.Load(a->mesh);
-                auto const places = engine::ReadPlaces(a->places);
-                context.GetReport()["places"] = places.faces.size();
-                if (!a->frames.empty()) {
-                    EvaluateFrames(*a, scene, *refiner, places, context);
-                    return kDone;
-                }
-                size_t numWithout = 0;
-                std::string const text = engine::EvaluatePlaces(
-                    scene, *refiner, places, a->places, context.GetCommon().IsLeftHanded(),
-                    context.GetCommon().IsDouble(), numWithout);
-                context.GetReport()["places_without_limit"] = numWithout;
-                if (a->output.empty())
-                    PrintData(text);
-                else
-                    engine::WriteFileAtomically(a->output, text);
-                return kDone;
-            }};
+    return {verb, [a](Context& context) { return Run(*a, context); }};
 }
 
 }  // namespace limn::cli

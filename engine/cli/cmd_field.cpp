@@ -8,6 +8,7 @@
 #include "engine/cli/parse_number.h"
 #include "engine/cli/word_option.h"
 #include "engine/field/field.h"
+#include "engine/images/png.h"
 #include "engine/io/edge_values.h"
 #include "engine/io/mesh_writer.h"
 #include "engine/io/number_table.h"
@@ -72,11 +73,11 @@ engine::FieldOptions MakeOptions(FieldArguments const& a, Far::TopologyLevel con
     for (auto const& text : a.sinks) options.sources.push_back(ParseStrength(text, "--sink", -1.0));
     for (auto const& text : a.vortices)
         options.vortices.push_back(ParseStrength(text, "--vortex", 1.0));
-    options.harmonics = ParseList(a.harmonics, "--harmonic");
+    if (!a.harmonics.empty()) options.harmonics = ParseList(a.harmonics, "--harmonic");
     if (!a.edgesPath.empty()) options.edges = engine::ReadEdgeValues(a.edgesPath, level);
     if (!a.matchPath.empty()) options.wanted = ReadWanted(a.matchPath, level);
-    if (options.sources.empty() && options.vortices.empty() && options.harmonics.empty() &&
-        a.edgesPath.empty() && a.matchPath.empty()) {
+    if (options.sources.empty() && options.vortices.empty() && !options.harmonics &&
+        !options.edges && a.matchPath.empty()) {
         throw Error(ErrorCode::BadOption,
                     "a field needs at least one of --source, --sink, --vortex, --harmonic, --edges "
                     "and --match");
@@ -85,12 +86,13 @@ engine::FieldOptions MakeOptions(FieldArguments const& a, Far::TopologyLevel con
 }
 
 std::string FormatVectors(char const* element, std::vector<std::array<double, 3>> const& vectors,
-                          bool isDouble) {
+                          Precision precision) {
+    int const digits = precision == Precision::Double ? 17 : 9;
     std::string text = fmt::format("{},x,y,z\n", element);
     for (size_t i = 0; i < vectors.size(); ++i) {
         auto const& v = vectors[i];
-        fmt::format_to(std::back_inserter(text), "{},{:.{}g},{:.{}g},{:.{}g}\n", i, v[0],
-                       isDouble ? 17 : 9, v[1], isDouble ? 17 : 9, v[2], isDouble ? 17 : 9);
+        fmt::format_to(std::back_inserter(text), "{},{:.{}g},{:.{}g},{:.{}g}\n", i, v[0], digits,
+                       v[1], digits, v[2], digits);
     }
     return text;
 }
@@ -128,38 +130,38 @@ void AddToReport(nlohmann::json& report, engine::FieldAudit const& audit) {
 
 int Run(FieldArguments const& a, Context& context) {
     Output const output = FindOutput(a.output);
-    auto const mesh = context.Load(a.mesh);
-    engine::FieldAudit audit;
-    auto options = MakeOptions(a, mesh.refiner->GetLevel(0));
+    auto const model = context.Load(a.mesh);
+    auto options = MakeOptions(a, model.GetLevel());
     options.hasVertexVectors = output == Output::Mesh || !a.picture.empty();
     if (output != Output::Mesh && options.hasVertexVectors && options.levels == 0 &&
-        !far_ext::HasRefinedFaces(mesh.scene.cage)) {
+        !far_ext::HasRefinedFaces(model.GetCage())) {
         throw Error(ErrorCode::BadOption,
                     "--picture: arrows stand at vertices of a refined mesh, and the output is that "
                     "of --levels 0; use --levels 1, or "
                     "leave --picture out");
     }
-    auto const field = engine::DesignField(mesh.scene, *mesh.refiner, options, audit);
-    AddToReport(context.GetReport(), audit);
+    auto const field = engine::DesignField(model, options, context.GetJob());
+    AddToReport(context.GetReport(), field.audit);
 
-    bool const isDouble = context.GetCommon().IsDouble();
+    Precision const precision = context.GetCommon().precision;
     std::vector<std::string> warnings;
-    engine::MeshSequence files(isDouble);
+    engine::MeshSequence files(precision);
     if (output == Output::Mesh) {
-        files.Add(a.output, field.mesh, &warnings);
+        warnings = files.Add(a.output, field.mesh);
         files.Add(a.output.substr(0, a.output.rfind('.')) + ".vectors.csv",
-                  FormatVectors("vertex", field.vectors, isDouble));
+                  FormatVectors("vertex", field.vectors, precision));
     } else if (output == Output::Edges) {
         files.Add(a.output,
                   engine::FormatEdgeValues(field.refined->GetLevel(options.levels), field.form));
     } else {
-        files.Add(a.output, FormatVectors("face", field.faceVectors, isDouble));
+        files.Add(a.output, FormatVectors("face", field.faceVectors, precision));
     }
     if (!a.picture.empty())
-        engine::WriteArrowPicture(files.Reserve(a.picture), field.mesh, field.vectors,
-                                  {{a.view[0], a.view[1], a.view[2]}});
+        engine::WritePng(
+            files.Reserve(a.picture),
+            engine::DrawArrows(field.mesh, field.vectors, {{a.view[0], a.view[1], a.view[2]}}));
     files.Commit();
-    for (std::string const& warning : warnings) context.GetJob().Warn(warning);
+    context.Warn(warnings);
     return kDone;
 }
 

@@ -38,8 +38,7 @@ nlohmann::json ToJson(std::vector<eval::SingularReport> const& components) {
     return list;
 }
 
-void AddToReport(nlohmann::json& report, engine::FitResult const& result,
-                 engine::Scene const& scene) {
+void AddToReport(nlohmann::json& report, engine::FitResult const& result) {
     auto const& solve = result.report;
     report["method"] = GetName(solve.method);
     report["iterations"] = solve.iterations;
@@ -54,7 +53,7 @@ void AddToReport(nlohmann::json& report, engine::FitResult const& result,
     report["solve_seconds"] = result.solveSeconds;
     for (size_t i = 0; i < result.primvars.size(); ++i) {
         auto const& primvar = result.primvars[i];
-        report["primvars"].push_back({{"name", scene.primvars[i].name},
+        report["primvars"].push_back({{"name", result.mesh.primvars[i].name},
                                       {"iterations", primvar.iterations},
                                       {"residual", primvar.residual},
                                       {"converged", primvar.converged}});
@@ -120,10 +119,13 @@ int Run(FitArguments const& a, Context& context) {
         throw Error(ErrorCode::BadOption,
                     "--keep-topology: without --alpha the topology is kept anyway");
     }
-    auto mesh = context.Load(a.mesh);
-    if (a.level > 0) mesh.scene = engine::RefineUniformly(mesh.scene, a.level, false);
-    engine::FitResult const result = engine::FitToLimit(mesh.scene, options);
-    AddToReport(context.GetReport(), result, mesh.scene);
+    auto model = context.Load(a.mesh);
+    if (a.level > 0) {
+        model = engine::Model::Build(
+            engine::RefineUniformly(model, {.levels = a.level}, context.GetJob()));
+    }
+    engine::FitResult const result = engine::FitToLimit(model, options, context.GetJob());
+    AddToReport(context.GetReport(), result);
     WarnOfSingular(context, a.mesh, result.report.singularComponents);
     if (!result.HasConverged() && !a.keepsResult)
         return context.MissTarget(Explain(a.mesh, result, options.tolerance));
@@ -135,16 +137,14 @@ int Run(FitArguments const& a, Context& context) {
                         "program does",
                         a.output, options.alpha));
     }
-    bool const isDouble = context.GetCommon().IsDouble();
-    if (!isDouble && options.tolerance < 1e-7) {
+    Precision const precision = context.GetCommon().precision;
+    if (precision == Precision::Float && options.tolerance < 1e-7) {
         context.GetJob().Warn(
             fmt::format("{}: floats keep 6e-8 of a coordinate; use --precision double for a "
                         "tolerance of {:.2g}",
                         a.output, options.tolerance));
     }
-    std::vector<std::string> warnings;
-    engine::WriteMesh(a.output, result.mesh, isDouble, &warnings);
-    for (std::string const& warning : warnings) context.GetJob().Warn(warning);
+    context.Warn(engine::WriteMesh(a.output, result.mesh, precision));
     return result.HasConverged() ? kDone
                                  : context.MissTarget(Explain(a.mesh, result, options.tolerance));
 }

@@ -28,7 +28,7 @@ nlohmann::json ToJson(engine::MeshInfo const& info, far_ext::ControlMesh const& 
             {"components", info.components},
             {"boundary_loops", info.boundaryLoops},
             {"euler_characteristic", info.eulerCharacteristic},
-            {"genus", info.genus < 0 ? nlohmann::json() : nlohmann::json(info.genus)},
+            {"genus", info.genus ? nlohmann::json(*info.genus) : nlohmann::json()},
             {"valence", {{"min", info.minValence}, {"max", info.maxValence}}},
             {"creases", info.creases},
             {"corners", info.corners},
@@ -50,8 +50,8 @@ nlohmann::json ToJson(engine::MeshInfo const& info, far_ext::ControlMesh const& 
             {"defects", defects}};
 }
 
-std::string ToText(engine::Scene const& scene, engine::MeshInfo const& info) {
-    std::string text = fmt::format("{}\n", scene.path);
+std::string ToText(engine::Model const& model, engine::MeshInfo const& info) {
+    std::string text = fmt::format("{}\n", model.GetPath());
     auto const line = [&](char const* what, std::string const& value) {
         text += fmt::format("  {:<14} {}\n", what, value);
     };
@@ -67,14 +67,14 @@ std::string ToText(engine::Scene const& scene, engine::MeshInfo const& info) {
          fmt::format("{} component{}, {} boundary loop{}, Euler characteristic {}, genus {}",
                      info.components, info.components == 1 ? "" : "s", info.boundaryLoops,
                      info.boundaryLoops == 1 ? "" : "s", info.eulerCharacteristic,
-                     info.genus < 0 ? "undefined" : std::to_string(info.genus)));
+                     info.genus ? std::to_string(*info.genus) : "undefined"));
     line("valence", fmt::format("{} to {}", info.minValence, info.maxValence));
     line("tags", fmt::format("{} crease edges, {} corners, {} holes", info.creases, info.corners,
                              info.holes));
-    line("options", engine::DescribeSubdivision(scene.cage));
+    line("options", engine::DescribeSubdivision(model.GetCage()));
     if (!info.groups.empty()) line("groups", fmt::format("{}", fmt::join(info.groups, ", ")));
     std::string primvars;
-    for (auto const& primvar : scene.primvars)
+    for (auto const& primvar : model.GetPrimvars())
         primvars += (primvars.empty() ? "" : ", ") + primvar.name;
     if (!primvars.empty()) line("primvars", primvars);
     if (!info.uv.present) {
@@ -104,13 +104,13 @@ Verb AddInfo(CLI::App& app) {
     verb->footer("Example:\n  limn info scenes/spot/spot.obj --json");
     return {verb, [a](Context& context) {
                 context.KeepStdoutForData(true);
-                auto const [scene, refiner] = context.Load(a->mesh, Context::Defects::Keep);
-                auto const info = engine::DescribeMesh(scene, refiner->GetLevel(0));
-                auto json = ToJson(info, scene.cage);
+                auto const model = context.Load(a->mesh, Context::Defects::Keep);
+                auto const info = engine::DescribeMesh(model);
+                auto json = ToJson(info, model.GetCage());
                 std::string const text =
                     a->asJson
                         ? json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"
-                        : ToText(scene, info);
+                        : ToText(model, info);
                 PrintData(text);
                 context.GetReport().update(json);
                 return kDone;

@@ -4,6 +4,7 @@
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
 #include "engine/cli/word_option.h"
+#include "engine/images/png.h"
 #include "engine/io/mesh_writer.h"
 #include "engine/measure/measure.h"
 #include "engine/measure/mesh_picture.h"
@@ -55,17 +56,19 @@ int RunMeasure(MeasureArguments const& a, Context& context) {
         throw Error(ErrorCode::BadOption,
                     "--highlight and --picture write files; name their beginning with -o");
     }
-    auto const [scene, refiner] = context.Load(a.mesh);
-    double const orientation = context.GetCommon().IsLeftHanded() ? -1.0 : 1.0;
-    auto const json = ToJson(engine::Measure(scene, *refiner, a.surface, orientation));
+    auto const model = context.Load(a.mesh);
+    CommonOptions const& common = context.GetCommon();
+    engine::Job& job = context.GetJob();
+    auto const json = ToJson(engine::Measure(model, a.surface, common.orientation, job));
     if (!a.prefix.empty()) {
-        auto const curved = engine::AddVertexCurvature(scene, *refiner, a.surface, orientation);
-        std::vector<std::string> warnings;
-        engine::WriteMesh(a.prefix + ".ply", curved, context.GetCommon().IsDouble(), &warnings);
-        for (std::string const& warning : warnings) context.GetJob().Warn(warning);
+        auto const curved = engine::AddVertexCurvature(
+            model, engine::FindVertexCurvature(model, a.surface, common.orientation, job));
+        context.Warn(engine::WriteMesh(a.prefix + ".ply", curved, common.precision));
         engine::PictureView const view{{a.view[0], a.view[1], a.view[2]}};
-        if (a.hasPicture) engine::WriteValuePicture(a.prefix + ".mean.png", curved, "mean", view);
-        if (a.hasHighlight) engine::WriteHighlightPicture(a.prefix + ".highlight.png", scene, view);
+        if (a.hasPicture)
+            engine::WritePng(a.prefix + ".mean.png", engine::DrawValues(curved, "mean", view));
+        if (a.hasHighlight)
+            engine::WritePng(a.prefix + ".highlight.png", engine::DrawHighlights(curved, view));
     }
     PrintData(json.dump(2) + "\n");
     context.GetReport().update(json);

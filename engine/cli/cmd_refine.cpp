@@ -8,6 +8,7 @@
 #include "engine/cli/names.h"
 #include "engine/cli/option_rules.h"
 #include "engine/cli/word_option.h"
+#include "engine/differential/curves.h"
 #include "engine/differential/differential.h"
 #include "engine/differential/edit_reader.h"
 #include "engine/differential/polyline_file.h"
@@ -35,37 +36,37 @@ struct RefineArguments {
     engine::DifferentialOptions options;
 };
 
-/// The scheme follows the rule where one is named.
-SubdivisionRule ChooseRule(RefineArguments const& a, CommonOptions const& common,
-                           far_ext::ControlMesh& cage) {
-    if (!a.rule) return SubdivisionRule::Scheme;
-    if (common.scheme && a.rule->scheme != cage.scheme) {
+/// The mesh under the scheme that the rule asks for, where one is named.
+engine::Model ApplyRule(RefineArguments const& a, CommonOptions const& common,
+                        engine::Model const& model) {
+    if (!a.rule) return model;
+    if (common.scheme && a.rule->scheme != model.GetCage().scheme) {
         throw Error(ErrorCode::BadOption, fmt::format("--rule {} contradicts --scheme {}",
                                                       kRuleWords.GetWord(*a.rule), *common.scheme));
     }
-    cage.scheme = a.rule->scheme;
-    far_ext::Validate(cage);  // triangles only, where the rule asks for them
-    return a.rule->rule;
+    return WithScheme(model, a.rule->scheme);
 }
 
-engine::DifferentialOptions MakeOptions(RefineArguments const& a, SubdivisionRule rule,
-                                        bool isDouble) {
+SubdivisionRule GetRule(RefineArguments const& a) {
+    return a.rule ? a.rule->rule : SubdivisionRule::Scheme;
+}
+
+engine::DifferentialOptions MakeOptions(RefineArguments const& a, CommonOptions const& common) {
     engine::DifferentialOptions options = a.options;
-    options.rule = rule;
-    options.tolerance =
-        isDouble ? 1e-12 : 1e-8;  // what is written should be right to its last digits
+    options.levels = a.levels;
+    options.rule = GetRule(a);
+    // What is written should be right to its last digits.
+    options.tolerance = common.precision == Precision::Double ? 1e-12 : 1e-8;
+    options.orientation = common.orientation;
     if (!a.editPath.empty()) options.edit = engine::ReadCurvatureEdit(a.editPath);
     return options;
 }
 
-/// \return false where the solver missed its tolerance
-bool RefineDifferentially(RefineArguments const& a, Context& context, SubdivisionRule rule,
-                          engine::Scene const& scene, engine::Scene& fine) {
-    auto const options = MakeOptions(a, rule, context.GetCommon().IsDouble());
-    engine::DifferentialReport found;
-    fine = engine::RefineDifferentially(scene, a.levels, options,
-                                        context.GetCommon().IsLeftHanded() ? -1.0 : 1.0, found);
-    for (std::string const& warning : found.warnings) context.GetJob().Warn(warning);
+engine::DifferentialResult RefineDifferentially(RefineArguments const& a,
+                                                engine::Model const& model, Context& context) {
+    auto result =
+        engine::RefineDifferentially(model, MakeOptions(a, context.GetCommon()), context.GetJob());
+    engine::DifferentialReport const& found = result.report;
     auto& report = context.GetReport();
     report["unknowns"] = found.unknowns;
     report["iterations"] = found.iterations;
@@ -82,7 +83,7 @@ bool RefineDifferentially(RefineArguments const& a, Context& context, Subdivisio
             "the solver stopped at residual {:.1e} after {} iterations{}", found.residual,
             found.iterations, a.keepsResult ? "" : "; nothing is written without --keep-result"));
     }
-    return found.converged;
+    return result;
 }
 
 void CheckSpace(RefineArguments const& a, CLI::App const& verb) {
@@ -99,27 +100,16 @@ int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& contex
     constexpr char const* kWhy = "means nothing with --curve; leave it out";
     RefuseEach(verb, kDifferentialOptions, kWhy);
     RefuseEach(verb, {"--limit"}, kWhy);
-    bool const isButterfly = a.rule && a.rule->rule == SubdivisionRule::Butterfly;
-    auto const rule = isButterfly ? eval::CurveRule::FourPoint : eval::CurveRule::CubicBSpline;
-    auto curves = engine::ReadPolylines(a.mesh);
-    eval::CurveReport worst;
-    size_t numPoints = 0;
+    auto const rule = GetRule(a) == SubdivisionRule::Butterfly ? eval::CurveRule::FourPoint
+                                                               : eval::CurveRule::CubicBSpline;
+    auto const curves = engine::ReadPolylines(a.mesh);
     auto const start = std::chrono::steady_clock::now();
-    for (eval::Curve& curve : curves) {
-        if (a.isDifferential) {
-            eval::CurveReport report;
-            curve = eval::RefineCurveDifferentially(curve, rule, a.levels, &report);
-            worst.residual = std::max(worst.residual, report.residual);
-            worst.compatibilityDefect =
-                std::max(worst.compatibilityDefect, report.compatibilityDefect);
-        } else {
-            for (int level = 0; level < a.levels; ++level)
-                curve = eval::SubdivideCurve(curve, rule);
-        }
-        numPoints += curve.points.size();
-    }
+    auto const [fine, worst] =
+        engine::RefineCurves(curves, {rule, a.levels, a.isDifferential}, context.GetJob());
     std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - start;
-    engine::WritePolylines(a.output, curves, context.GetCommon().IsDouble());
+    size_t numPoints = 0;
+    for (eval::Curve const& curve : fine) numPoints += curve.points.size();
+    engine::WritePolylines(a.output, fine, context.GetCommon().precision);
     auto& report = context.GetReport();
     report["inputs"].push_back(
         {{"path", a.mesh}, {"sha256", engine::Sha256OfFile(a.mesh)}, {"curves", curves.size()}});
@@ -133,20 +123,22 @@ int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& contex
 int RunRefine(RefineArguments const& a, CLI::App const& verb, Context& context) {
     if (a.isCurve) return RefineCurves(a, verb, context);
     CheckSpace(a, verb);
-    auto [scene, refiner] = context.Load(a.mesh);
-    SubdivisionRule const rule = ChooseRule(a, context.GetCommon(), scene.cage);
-    context.GetReport()["inputs"].back()["subdivision"] = engine::DescribeSubdivision(scene.cage);
+    auto const model = ApplyRule(a, context.GetCommon(), context.Load(a.mesh));
+    context.GetReport()["inputs"].back()["subdivision"] =
+        engine::DescribeSubdivision(model.GetCage());
     engine::Scene fine;
     bool isDone = true;
-    if (a.isDifferential)
-        isDone = RefineDifferentially(a, context, rule, scene, fine);
-    else
-        fine = engine::RefineUniformly(scene, a.levels, a.toLimit, rule);
-    if (isDone || a.keepsResult) {
-        std::vector<std::string> warnings;
-        engine::WriteMesh(a.output, fine, context.GetCommon().IsDouble(), &warnings);
-        for (std::string const& warning : warnings) context.GetJob().Warn(warning);
+    if (a.isDifferential) {
+        auto result = RefineDifferentially(a, model, context);
+        fine = std::move(result.mesh);
+        isDone = result.report.converged;
+    } else {
+        fine = engine::RefineUniformly(
+            model, {.levels = a.levels, .toLimit = a.toLimit, .rule = GetRule(a)},
+            context.GetJob());
     }
+    if (isDone || a.keepsResult)
+        context.Warn(engine::WriteMesh(a.output, fine, context.GetCommon().precision));
     context.GetReport()["vertices"] = fine.cage.numVertices;
     context.GetReport()["faces"] = fine.cage.GetNumFaces();
     return isDone ? kDone : kNotReached;
@@ -182,7 +174,7 @@ Verb AddRefine(CLI::App& app) {
     differential(
         verb->add_option("--handle", a->options.handles,
                          "vertex that stays: one per component or boundary loop (repeatable)"));
-    differential(AddWordOption(*verb, "--solver", a->options.usesCholesky, kUsesCholeskyWords,
+    differential(AddWordOption(*verb, "--solver", a->options.solver, kDifferentialSolverWords,
                                "multigrid (default) or cholesky"));
     differential(
         verb->add_option("--edit", a->editPath, "JSON: curvature factors, rotations, filter"));

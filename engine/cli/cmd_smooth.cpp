@@ -9,6 +9,7 @@
 #include "engine/cli/names.h"
 #include "engine/cli/option_rules.h"
 #include "engine/cli/word_option.h"
+#include "engine/images/png.h"
 #include "engine/io/mesh_writer.h"
 #include "engine/measure/mesh_picture.h"
 #include "engine/scene/subdivision_names.h"
@@ -24,7 +25,10 @@ struct SmoothArguments {
     std::string mesh, output, widthMap, widthEdges, widthTexture, picture;
     std::vector<double> view{1.0, 0.6, 0.8};
     double width = 0.0, widthFactor = 0.12, widthScale = 0.12;
-    bool isLocal = false;
+    std::optional<double> tolerance;
+    std::optional<int> sweeps, iterations;
+    bool isLocal = false, isGraph = false, preservesVolume = false, limitsWidth = false,
+         keepsResult = false;
     engine::SmoothOptions options;
 
     bool IsBisection() const { return options.refinement == engine::SmoothRefinement::Bisect; }
@@ -41,7 +45,7 @@ void CheckWidths(SmoothArguments const& a, CLI::App const& verb) {
 
 void CheckSolver(SmoothArguments const& a, CLI::App const& verb) {
     RefuseTogether(verb, {"--sweeps", "--iterations", "--tolerance"});
-    if (std::isnan(a.options.tolerance))
+    if (a.tolerance && std::isnan(*a.tolerance))
         throw Error(ErrorCode::BadOption, "--tolerance: give a number from 1e-14 to 1");
     using Solver = eval::CascadeSolver;
     Solver const solver = a.options.solver;
@@ -76,35 +80,46 @@ void CheckOptions(SmoothArguments const& a, CLI::App const& verb) {
     }
 }
 
-engine::SmoothOptions MakeOptions(SmoothArguments const& a, bool isDouble) {
+engine::SmoothStop MakeStop(SmoothArguments const& a) {
+    if (a.iterations) return engine::IterationsPerLevel{*a.iterations};
+    if (a.sweeps) return engine::SweepsOnFinest{*a.sweeps};
+    if (a.options.solver == eval::CascadeSolver::Jacobi)
+        return engine::SweepsOnFinest{1};  // as [Diewald02] always does
+    return a.tolerance ? engine::StopAtResidual{*a.tolerance} : engine::StopAtResidual{};
+}
+
+engine::SmoothOptions MakeOptions(SmoothArguments const& a, Precision precision) {
     engine::SmoothOptions options = a.options;
-    bool const isCounted = options.sweeps > 0 || options.iterations > 0;
-    if (options.solver == eval::CascadeSolver::Jacobi && !isCounted)
-        options.sweeps = 1;  // as [Diewald02] always does
-    options.isSingle = !isDouble;
+    options.stop = MakeStop(a);
+    if (a.isGraph) options.constraint = engine::SmoothConstraint::Graph;
+    if (a.preservesVolume) options.constraint = engine::SmoothConstraint::Volume;
+    if (a.limitsWidth) options.onCollapse = engine::OnCollapse::LimitWidth;
+    if (a.keepsResult) options.onCollapse = engine::OnCollapse::KeepResult;
+    options.precision = precision;
     return options;
 }
 
 engine::FilterWidths MakeWidths(SmoothArguments const& a, CLI::App const& verb,
-                                engine::Scene const& scene, Far::TopologyLevel const& level) {
-    double const width = verb.count("--width")
-                             ? a.width
-                             : a.widthFactor * far_ext::FindMeanEdgeLength(level, scene.positions);
-    if (a.isLocal) return engine::FilterWidths::LocalEdgeLengths(scene, level, a.widthScale);
-    if (!a.widthMap.empty()) return engine::FilterWidths::ReadMap(a.widthMap, scene);
-    if (!a.widthEdges.empty()) return engine::FilterWidths::ReadEdges(a.widthEdges, scene, level);
-    if (!a.widthTexture.empty())
-        return engine::FilterWidths::ReadTexture(a.widthTexture, width, scene);
-    return engine::FilterWidths::Constant(width);
+                                engine::Model const& model) {
+    double const width =
+        verb.count("--width")
+            ? a.width
+            : a.widthFactor * far_ext::FindMeanEdgeLength(model.GetLevel(), model.GetPositions());
+    if (a.isLocal) return engine::MakeLocalWidths(model, a.widthScale);
+    if (!a.widthMap.empty()) return engine::ReadVertexWidths(a.widthMap, model);
+    if (!a.widthEdges.empty()) return engine::EdgeWidths::Read(a.widthEdges, model);
+    if (!a.widthTexture.empty()) return engine::PaintedWidths::Read(a.widthTexture, width, model);
+    return engine::ConstantWidth{width};
 }
 
 /// Triangles stay triangles and all else becomes quads, unless a scheme is asked for: the filter
 /// has no subdivision rule.
-void ChooseScheme(CommonOptions const& common, bool isBisection, far_ext::ControlMesh& cage) {
+Sdc::SchemeType ChooseScheme(SmoothArguments const& a, CommonOptions const& common,
+                             far_ext::ControlMesh const& cage) {
     bool const areTriangles = std::all_of(cage.faceSizes.begin(), cage.faceSizes.end(),
                                           [](int size) { return size == 3; });
-    if (!areTriangles || (common.scheme && !isBisection)) return;
-    cage.scheme = Sdc::SCHEME_LOOP;
+    bool const isFree = !common.scheme || a.IsBisection();
+    return areTriangles && isFree ? Sdc::SCHEME_LOOP : cage.scheme;
 }
 
 void AddToReport(nlohmann::json& report, engine::SmoothReport const& found) {
@@ -126,10 +141,10 @@ void AddToReport(nlohmann::json& report, engine::SmoothReport const& found) {
     report["mean_edge"] = found.meanEdge;
     report["largest_width"] = found.largestWidth;
     if (found.limitedBy) report["width_limited_by"] = *found.limitedBy;
-    if (found.shrinkage.firstVertex >= 0) {
-        report["shrinkage"] = {{"first_vertex", found.shrinkage.firstVertex},
-                               {"level", found.shrinkage.level},
-                               {"radius_ratio", found.shrinkage.radiusRatio}};
+    if (found.shrinkage) {
+        report["shrinkage"] = {{"first_vertex", found.shrinkage->firstVertex},
+                               {"level", found.shrinkage->level},
+                               {"radius_ratio", found.shrinkage->radiusRatio}};
     }
     if (found.criticalFactor) {
         report["critical_factor"] = *found.criticalFactor;
@@ -146,7 +161,7 @@ void AddToReport(nlohmann::json& report, engine::SmoothReport const& found) {
 /// What went wrong, and what helps, in one line.
 std::string Explain(std::string const& path, engine::SmoothReport const& found) {
     if (found.hasCollapsed) {
-        auto const& [vertex, level, ratio] = found.shrinkage;
+        auto const& [vertex, level, ratio] = *found.shrinkage;
         return fmt::format(
             "{}: a filter of width {:.4g} collapses the component of vertex {} (mean radius {:.2g} "
             "of its own on level {}); measured on a coarser mesh it "
@@ -163,33 +178,28 @@ std::string Explain(std::string const& path, engine::SmoothReport const& found) 
 
 int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     CheckOptions(a, verb);
-    auto [scene, refiner] =
-        context.Load(a.mesh, Context::Defects::Keep);  // engine::Smooth warns of them, or refuses
-    ChooseScheme(context.GetCommon(), a.IsBisection(), scene.cage);
-    far_ext::Validate(scene.cage);
-    context.GetReport()["inputs"].back()["subdivision"] = engine::DescribeSubdivision(scene.cage);
-    bool const isDouble = context.GetCommon().IsDouble();
-    auto const options = MakeOptions(a, isDouble);
-    engine::SmoothReport found;
-    engine::Scene fine =
-        engine::Smooth(scene, *refiner, MakeWidths(a, verb, scene, refiner->GetLevel(0)), options,
-                       context.GetJob(), found);
+    auto model = context.Load(a.mesh,
+                              Context::Defects::Keep);  // engine::Smooth warns of them, or refuses
+    model = WithScheme(model, ChooseScheme(a, context.GetCommon(), model.GetCage()));
+    context.GetReport()["inputs"].back()["subdivision"] =
+        engine::DescribeSubdivision(model.GetCage());
+    Precision const precision = context.GetCommon().precision;
+    auto [mesh, found] = engine::Smooth(model, MakeWidths(a, verb, model),
+                                        MakeOptions(a, precision), context.GetJob());
     AddToReport(context.GetReport(), found);
-    if (!found.HasConverged() && !options.keepsResult)
-        return context.MissTarget(Explain(a.mesh, found));
+    if (!found.HasConverged() && !a.keepsResult) return context.MissTarget(Explain(a.mesh, found));
 
     if (engine::GetEnding(a.output) == ".obj")
-        fine.primvars.clear();  // which has no place for them
-    std::vector<std::string> warnings;
-    engine::MeshSequence files(isDouble);
-    files.Add(a.output, fine, &warnings);
+        mesh->primvars.clear();  // which has no place for them
+    engine::MeshSequence files(precision);
+    auto const warnings = files.Add(a.output, *mesh);
     if (!a.picture.empty())
-        engine::WriteShadedPicture(files.Reserve(a.picture), fine,
-                                   {{a.view[0], a.view[1], a.view[2]}});
+        engine::WritePng(files.Reserve(a.picture),
+                         engine::DrawShaded(*mesh, {{a.view[0], a.view[1], a.view[2]}}));
     files.Commit();
-    for (std::string const& warning : warnings) context.GetJob().Warn(warning);
-    context.GetReport()["vertices"] = fine.cage.numVertices;
-    context.GetReport()["faces"] = fine.cage.GetNumFaces();
+    context.Warn(warnings);
+    context.GetReport()["vertices"] = mesh->cage.numVertices;
+    context.GetReport()["faces"] = mesh->cage.GetNumFaces();
     return found.HasConverged() ? kDone : context.MissTarget(Explain(a.mesh, found));
 }
 
@@ -228,12 +238,12 @@ Verb AddSmooth(CLI::App& app) {
     solve(AddWordOption(*verb, "--solver", a->options.solver, kCascadeSolverWords,
                         "cg (default), jacobi or exact"));
     solve(verb->add_option(
-              "--sweeps", a->options.sweeps,
+              "--sweeps", a->sweeps,
               "on the finest level, more on coarser ones by the a-priori rule (jacobi: default 1)"))
         ->check(CLI::Range(1, 1000000));
-    solve(verb->add_option("--iterations", a->options.iterations, "the same number on every level"))
+    solve(verb->add_option("--iterations", a->iterations, "the same number on every level"))
         ->check(CLI::Range(1, 1000000));
-    solve(verb->add_option("--tolerance", a->options.tolerance,
+    solve(verb->add_option("--tolerance", a->tolerance,
                            "cg: to this residual on every level (default 1e-6)"))
         ->check(CLI::Range(1e-14, 1.0));
     auto const keep = [](CLI::Option* option) { return option->group("What stays"); };
@@ -241,13 +251,13 @@ Verb AddSmooth(CLI::App& app) {
                        "fixed (default); natural: free, its triangles degenerate with the levels"));
     keep(verb->add_flag("--keep-creases", a->options.keepsCreases,
                         "sharp edges and corners stay sharp: the filter does not act across them"));
-    keep(verb->add_flag("--preserve-volume", a->options.preservesVolume,
+    keep(verb->add_flag("--preserve-volume", a->preservesVolume,
                         "closed components keep their volume"));
-    keep(verb->add_flag("--graph", a->options.isGraph,
+    keep(verb->add_flag("--graph", a->isGraph,
                         "MESH is a height field: z over the plane of x and y, which stay"));
-    keep(verb->add_flag("--limit-width", a->options.limitsWidth,
+    keep(verb->add_flag("--limit-width", a->limitsWidth,
                         "reduce a width that collapses the shape to what it carries"));
-    keep(verb->add_flag("--keep-result", a->options.keepsResult,
+    keep(verb->add_flag("--keep-result", a->keepsResult,
                         "write what collapsed or missed its tolerance"));
     auto* const picture =
         verb->add_option("--picture", a->picture, "also write a PNG: the result, flat shaded");

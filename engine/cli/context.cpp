@@ -15,8 +15,6 @@
 
 namespace limn::cli {
 
-using engine::Scene;
-
 namespace {
 
 Console::Style ChooseStyle(CommonOptions const& common) {
@@ -25,8 +23,7 @@ Console::Style ChooseStyle(CommonOptions const& common) {
     return ::isatty(STDERR_FILENO) ? Console::Style::Bar : Console::Style::Lines;
 }
 
-void ApplyOptions(CommonOptions const& common, Scene& scene) {
-    auto& cage = scene.cage;
+void ApplyOptions(CommonOptions const& common, far_ext::ControlMesh& cage) {
     if (common.scheme) cage.scheme = engine::kSchemeWords.Parse(*common.scheme);
     if (common.boundary)
         cage.options.SetVtxBoundaryInterpolation(engine::kBoundaryWords.Parse(*common.boundary));
@@ -58,28 +55,25 @@ Context::Context(CommonOptions const& common, std::string command,
     _report["inputs"] = nlohmann::json::array();
 }
 
-Context::Mesh Context::Load(std::string const& path, Defects defects) {
-    Scene scene = _meshes.Read(path);
-    ApplyOptions(_common, scene);
-    for (std::string const& warning : scene.warnings) _job.Warn(warning);
-    std::unique_ptr<Far::TopologyRefiner> refiner;
-    try {
-        far_ext::Validate(scene.cage);
-        refiner = far_ext::CreateRefiner(scene.cage);
-    } catch (Error const& error) {
-        throw Error(error.GetCode(), fmt::format("{}: {}", path, error.what()));
-    }
+engine::Model Context::Load(std::string const& path, Defects defects) {
+    engine::Scene scene = _meshes.Read(path);
+    ApplyOptions(_common, scene.cage);
+    Warn(scene.warnings);
+    auto model = engine::Model::Build(std::move(scene));
     if (defects == Defects::Warn) {
-        for (auto const& defect : engine::FindDefects(scene, refiner->GetLevel(0))) {
+        for (auto const& defect : engine::FindDefects(model))
             _job.Warn(fmt::format("{}: {}", path, defect.message));
-        }
     }
     _report["inputs"].push_back({{"path", path},
-                                 {"sha256", scene.sha256},
-                                 {"vertices", scene.cage.numVertices},
-                                 {"faces", scene.cage.GetNumFaces()},
-                                 {"subdivision", engine::DescribeSubdivision(scene.cage)}});
-    return {std::move(scene), std::move(refiner)};
+                                 {"sha256", model.GetSha256()},
+                                 {"vertices", model.GetCage().numVertices},
+                                 {"faces", model.GetCage().GetNumFaces()},
+                                 {"subdivision", engine::DescribeSubdivision(model.GetCage())}});
+    return model;
+}
+
+void Context::Warn(std::vector<std::string> const& messages) {
+    for (std::string const& message : messages) _job.Warn(message);
 }
 
 int Context::MissTarget(std::string const& message) {
@@ -92,6 +86,14 @@ void Context::KeepStdoutForData(bool writesToStdout) const {
         throw Error(ErrorCode::BadOption,
                     "--report -: stdout already carries the data; name a file");
     }
+}
+
+engine::Model WithScheme(engine::Model const& model, Sdc::SchemeType scheme) {
+    if (scheme == model.GetCage().scheme) return model;
+    engine::Scene scene = model.MakeScene();
+    scene.cage.scheme = scheme;
+    far_ext::Validate(scene.cage);  // here the option is wrong, not the file: no path
+    return engine::Model::Build(std::move(scene));
 }
 
 void PrintData(std::string const& text) {

@@ -13,6 +13,9 @@ namespace limn::cli {
 // The words that only the command line has. Those that files and reports have, too, lie beside what
 // they name.
 
+inline constexpr auto kPrecisionWords = MakeEnumWords<Precision>(
+    "precision", {{Precision::Float, "float"}, {Precision::Double, "double"}});
+
 inline constexpr auto kVectorSpaceWords =
     MakeEnumWords<engine::VectorSpace>("space", {{engine::VectorSpace::Object, "object"},
                                                  {engine::VectorSpace::Tangent, "tangent"},
@@ -48,8 +51,9 @@ inline constexpr auto kLaplacianWords = MakeEnumWords<engine::Laplacian>(
                   {engine::Laplacian::Cotangent, "cotangent"},
                   {engine::Laplacian::Mesh, "mesh"}});
 
-inline constexpr auto kUsesCholeskyWords =
-    MakeEnumWords<bool>("usesCholesky", {{false, "multigrid"}, {true, "cholesky"}});
+inline constexpr auto kDifferentialSolverWords = MakeEnumWords<engine::DifferentialSolver>(
+    "solver", {{engine::DifferentialSolver::Multigrid, "multigrid"},
+               {engine::DifferentialSolver::Cholesky, "cholesky"}});
 
 // ---- smooth
 

@@ -8,6 +8,8 @@ namespace limn::cli {
 namespace {
 
 constexpr OptionName kOptionNames[] = {
+    {"Graph", "--graph"},
+    {"PaintedWidths", "--width-texture"},
     {"against", "--against"},
     {"boundary", "--boundary"},
     {"compression", "--compression"},
@@ -16,15 +18,16 @@ constexpr OptionName kOptionNames[] = {
     {"dirMagLevels", "--dirmag"},
     {"field", "--field"},
     {"frames", "--frames"},
+    {"frequency", "--noise-frequency"},
     {"fvar", "--fvar"},
     {"groups", "--groups"},
     {"harmonics", "--harmonic"},
     {"isBalanced", "--balance"},
-    {"isGraph", "--graph"},
     {"isHalf", "--half"},
     {"levels", "--levels"},
     {"maps", "--maps"},
     {"noiseRamp", "--noise-ramp"},
+    {"octaves", "--noise-octaves"},
     {"outputPattern", "-o"},
     {"path", "-o"},
     {"precision", "--precision"},
@@ -35,10 +38,9 @@ constexpr OptionName kOptionNames[] = {
     {"solver", "--solver"},
     {"space", "--space"},
     {"spatialLevels", "--spatial-first"},
+    {"stop", "--sweeps"},
     {"triangles", "--triangles"},
-    {"usesCholesky", "--solver cholesky"},
     {"view", "--view"},
-    {"widthTexture", "--width-texture"},
 };
 
 }  // namespace

@@ -12,8 +12,10 @@
 #include <tbb/task_arena.h>
 
 #include "engine/cli/cli.h"
+#include "engine/cli/names.h"
 #include "engine/cli/option_names.h"
 #include "engine/cli/word_option.h"
+#include "engine/scene/subdivision_names.h"
 #include "engine/version.h"
 #include "far_ext/error.h"
 
@@ -33,16 +35,15 @@ void AddCommonOptions(CLI::App& app, CommonOptions& o) {
     group(app.add_option("--creases", o.creases, "uniform or chaikin (default: the file's tag)"));
     group(
         app.add_option("--triangles", o.triangles, "catmark or smooth (default: the file's tag)"));
-    group(app.add_option("--orientation", o.orientation,
-                         "right (default): faces are counter-clockwise from outside; left")
-              ->check(CLI::IsMember({"right", "left"})));
+    group(AddWordOption(app, "--orientation", o.orientation, engine::kOrientationWords,
+                        "right (default): faces are counter-clockwise from outside; left"));
     group(app.add_option("--threads", o.numThreads,
                          "default: LIMN_THREADS, OPENIMAGEIO_THREADS, CUE_THREADS, else all cores")
               ->check(CLI::Range(1, 1024)));
     group(
         app.add_option("--report", o.reportPath, "write a JSON report of the run (- for stdout)"));
-    group(app.add_option("--precision", o.precision, "float (default) or double: digits of output")
-              ->check(CLI::IsMember({"float", "double"})));
+    group(AddWordOption(app, "--precision", o.precision, kPrecisionWords,
+                        "float (default) or double: digits of output"));
     group(app.add_flag("--quiet", o.isQuiet, "no progress, no warnings"));
     group(app.add_flag("--verbose", o.isVerbose, "say more"));
     group(AddWordOption(app, "--progress", o.progress, kProgressWords,

@@ -5,8 +5,6 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "engine/scene/job.h"
-
 namespace limn::cli {
 
 namespace {
@@ -23,7 +21,6 @@ void InstallSignalHandlers() {
     std::signal(SIGINT, OnSignal);
     std::signal(SIGTERM, OnSignal);
     std::signal(SIGPIPE, SIG_IGN);
-    engine::SetInterruptPoll([] { return GetSignal() != 0; });
 }
 
 int GetSignal() {

@@ -8,7 +8,6 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "engine/scene/job.h"
 #include "engine/scene/refine.h"
 #include "eval/differential/area_fit.h"
 #include "eval/differential/dirmag.h"
@@ -36,12 +35,12 @@ void ApplyFilter(eval::DirMag& split) {
 
 /// Changes coordinates of a level whose first vertices are the input's.
 void ApplyEdit(CurvatureEdit const& edit, Level const& level, Rows const& positions,
-               double orientation, Rows& deltas) {
+               Orientation orientation, Rows& deltas) {
     if (edit.isPolarised) {
         auto split = eval::SplitDirMag(level, positions, deltas);
-        for (double& magnitude : split.magnitudes) magnitude *= orientation;
+        for (double& magnitude : split.magnitudes) magnitude *= GetSign(orientation);
         ApplyFilter(split);
-        for (double& magnitude : split.magnitudes) magnitude *= orientation;
+        for (double& magnitude : split.magnitudes) magnitude *= GetSign(orientation);
         deltas = eval::JoinDirMag(split);
     }
     far_ext::MutablePoints const points(deltas);
@@ -82,16 +81,14 @@ double FindSize(Rows const& positions) {
 
 class DifferentialRefinement {
 public:
-    DifferentialRefinement(Scene const& scene, int levels, DifferentialOptions const& options,
-                           double orientation, DifferentialReport& report)
-        : _options(options), _orientation(orientation), _report(report), _spatial(scene.positions) {
-        Scene curved = scene;
-        curved.cage.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-        _refiner = MakeUniformRefiner(curved, levels);
+    DifferentialRefinement(Model const& model, DifferentialOptions const& options, Job& job)
+        : _model(model), _options(options), _job(job), _spatial(model.GetPositions()) {
+        far_ext::ControlMesh curved = model.GetCage();
+        curved.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
+        _refiner = MakeUniformRefiner(curved, model.GetPath(), options.levels);
     }
 
-    Far::TopologyRefiner const& GetRefiner() const { return *_refiner; }
-    Rows Run();
+    DifferentialResult Run();
 
 private:
     Level GetStart() const { return _refiner->GetLevel(_options.spatialLevels); }
@@ -104,12 +101,14 @@ private:
                    : far_ext::BuildCotangentLaplacian(level, positions);
     }
     Rows FindAreaDeltas(Rows const& positions) const;
+    Rows FindPositions();
     Rows Subdivide(Rows deltas);
     void FitAreas(eval::Reconstructor& reconstructor, Rows const& deltas, Rows& positions);
 
+    Model const& _model;
     DifferentialOptions const& _options;
-    double _orientation;
-    DifferentialReport& _report;
+    Job& _job;
+    DifferentialReport _report;
     std::unique_ptr<Far::TopologyRefiner> _refiner;
     Rows _spatial;  // positions of the level reached in space
     Rows _start;    // those where differential coordinates begin
@@ -126,20 +125,20 @@ Rows DifferentialRefinement::FindAreaDeltas(Rows const& positions) const {
 
 /// Edits coordinates of the start level and takes them to the last.
 Rows DifferentialRefinement::Subdivide(Rows deltas) {
-    ApplyEdit(_options.edit, GetStart(), _start, _orientation, deltas);
+    ApplyEdit(_options.edit, GetStart(), _start, _options.orientation, deltas);
     int level = _options.spatialLevels;
     auto split = eval::SplitDirMag(GetStart(), _start, deltas);
     _report.tangentialShare = split.tangentialShare;
     if (_options.dirMagLevels > 0) {
         for (int end = level + _options.dirMagLevels; level < end; ++level) {
-            CheckInterrupted();
+            _job.CheckStopped();
             split = eval::SubdivideDirMag(
                 far_ext::BuildSubdivisionRows(*_refiner, level + 1, _options.rule), split);
         }
         deltas = eval::JoinDirMag(split);
     }
     for (; level < _refiner->GetMaxLevel(); ++level) {
-        CheckInterrupted();
+        _job.CheckStopped();
         deltas = eval::SubdivideValues<3>(*_refiner, level + 1, _options.rule, deltas);
     }
     return deltas;
@@ -148,7 +147,7 @@ Rows DifferentialRefinement::Subdivide(Rows deltas) {
 void DifferentialRefinement::FitAreas(eval::Reconstructor& reconstructor, Rows const& deltas,
                                       Rows& positions) {
     auto const build = [&](std::span<double const> p) {
-        CheckInterrupted();
+        _job.CheckStopped();
         return BuildAreaLaplacian(GetLast(), p);
     };
     auto const fit =
@@ -158,10 +157,10 @@ void DifferentialRefinement::FitAreas(eval::Reconstructor& reconstructor, Rows c
     _report.converged = fit.converged;
 }
 
-Rows DifferentialRefinement::Run() {
+Rows DifferentialRefinement::FindPositions() {
     _start = _spatial;
     for (int level = 1; level <= _refiner->GetMaxLevel(); ++level) {
-        CheckInterrupted();
+        _job.CheckStopped();
         _spatial = eval::SubdivideValues<3>(*_refiner, level, _options.rule, _spatial);
         if (level == _options.spatialLevels) _start = _spatial;
     }
@@ -175,11 +174,12 @@ Rows DifferentialRefinement::Run() {
     if (_options.laplacian != Laplacian::Combinatorial)
         areaDeltas = Subdivide(FindAreaDeltas(_start));
 
-    CheckInterrupted();
+    _job.CheckStopped();
     auto const start = std::chrono::steady_clock::now();
     Rows positions = _spatial;
+    bool const isCholesky = _options.solver == DifferentialSolver::Cholesky;
     eval::Reconstructor reconstructor(*_refiner, _options.handles,
-                                      _options.usesCholesky ? _refiner->GetMaxLevel() : 0);
+                                      isCholesky ? _refiner->GetMaxLevel() : 0);
     auto const solve = reconstructor.Solve(deltas, positions, {.tolerance = _options.tolerance});
     _report.unknowns = reconstructor.GetMultigrid().GetLevels().back().numUnknowns;
     _report.iterations = solve.iterations;
@@ -192,48 +192,57 @@ Rows DifferentialRefinement::Run() {
 
     double const size = FindSize(_spatial);
     _report.sizeRatio = size > 0.0 ? FindSize(positions) / size : 1.0;
-    _report.energy =
-        eval::FindThinPlateEnergy(eval::MeasureMeshCurvature(GetLast(), positions, _orientation));
+    _report.energy = eval::FindThinPlateEnergy(
+        eval::MeasureMeshCurvature(GetLast(), positions, _options.orientation));
     return positions;
 }
 
-void CheckOptions(Scene const& scene, int levels, DifferentialOptions const& options) {
-    if (options.spatialLevels + options.dirMagLevels > levels) {
+DifferentialResult DifferentialRefinement::Run() {
+    Scene fine = RefineAllButPositions(_model, *_refiner, _job);
+    fine.positions = FindPositions();
+    return {std::move(fine), _report};
+}
+
+void CheckOptions(Model const& model, DifferentialOptions const& options) {
+    if (options.spatialLevels + options.dirMagLevels > options.levels) {
         throw Error(
             ErrorCode::BadOption,
             fmt::format("`levels` {} holds no {} levels in space and {} by direction and magnitude",
-                        levels, options.spatialLevels, options.dirMagLevels));
+                        options.levels, options.spatialLevels, options.dirMagLevels));
     }
-    if (options.laplacian != Laplacian::Combinatorial && options.usesCholesky) {
+    if (options.laplacian != Laplacian::Combinatorial &&
+        options.solver == DifferentialSolver::Cholesky) {
         throw Error(
             ErrorCode::BadOption,
-            "`usesCholesky`: only the combinatorial Laplacian stays the same from step to step; "
+            "`solver` cholesky: only the combinatorial Laplacian stays the same from step to step; "
             "use multigrid");
     }
+    Index const numVertices = model.GetCage().numVertices;
     auto const check = [&](Index vertex) {
-        if (vertex >= 0 && vertex < scene.cage.numVertices) return;
+        if (vertex >= 0 && vertex < numVertices) return;
         throw Error(ErrorCode::BadMesh, fmt::format("the edit names vertex {}; there are 0 to {}",
-                                                    vertex, scene.cage.numVertices - 1));
+                                                    vertex, numVertices - 1));
     };
     for (auto const& factor : options.edit.factors) check(factor.vertex);
     for (auto const& rotation : options.edit.rotations) check(rotation.vertex);
 }
 
-void Warn(Scene const& scene, DifferentialOptions const& options, DifferentialReport& report) {
-    if (!scene.cage.creaseSharpness.empty()) {
-        report.warnings.push_back(
+void Warn(Model const& model, DifferentialOptions const& options, DifferentialReport const& report,
+          Job& job) {
+    if (!model.GetCage().creaseSharpness.empty()) {
+        job.Warn(
             "creases get round: differential coordinates hold no tangents; refine this mesh in "
             "space");
     }
     if (report.tangentialShare > eval::kDirMagLimit && options.dirMagLevels > 0) {
-        report.warnings.push_back(
+        job.Warn(
             fmt::format("tangential parts are {:.2f} of the differential coordinates, more than "
                         "{}: `dirMagLevels` "
                         "takes them for normals; leave it out",
                         report.tangentialShare, eval::kDirMagLimit));
     }
     if (std::abs(report.sizeRatio - 1.0) > 0.1) {
-        report.warnings.push_back(fmt::format(
+        job.Warn(fmt::format(
             "the result has {:.2f} times the size of the spatial refinement; `spatialLevels` 1 "
             "brings coarse cages nearer",
             report.sizeRatio));
@@ -247,14 +256,12 @@ double PolariseCurvature(double x) {
     return x > 0.5 ? 0.5 + push : 0.5 - push;
 }
 
-Scene RefineDifferentially(Scene const& scene, int levels, DifferentialOptions const& options,
-                           double orientation, DifferentialReport& report) {
-    CheckOptions(scene, levels, options);
-    DifferentialRefinement refinement(scene, levels, options, orientation, report);
-    Scene fine = RefineAllButPositions(scene, refinement.GetRefiner());
-    fine.positions = refinement.Run();
-    Warn(scene, options, report);
-    return fine;
+DifferentialResult RefineDifferentially(Model const& model, DifferentialOptions const& options,
+                                        Job& job) {
+    CheckOptions(model, options);
+    DifferentialResult result = DifferentialRefinement(model, options, job).Run();
+    Warn(model, options, result.report, job);
+    return result;
 }
 
 }  // namespace limn::engine

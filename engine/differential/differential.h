@@ -2,10 +2,10 @@
 #pragma once
 
 #include <array>
-#include <string>
 #include <vector>
 
-#include "engine/scene/scene.h"
+#include "engine/scene/job.h"
+#include "engine/scene/model.h"
 #include "eval/differential/mesh_curvature.h"
 #include "far_ext/differential/subdivision_rows.h"
 
@@ -33,15 +33,19 @@ double PolariseCurvature(double x);
 
 enum class Laplacian { Combinatorial, Cotangent, Mesh };
 
+enum class DifferentialSolver { Multigrid, Cholesky };
+
 struct DifferentialOptions {
+    int levels = 1;  ///< 0 to 10, those in space included
     far_ext::SubdivisionRule rule = far_ext::SubdivisionRule::Scheme;
     Laplacian laplacian = Laplacian::Combinatorial;
     int dirMagLevels = 0;   ///< levels done by direction and magnitude
     int spatialLevels = 0;  ///< levels done in space before
     std::vector<Index> handles;
-    bool usesCholesky = false;
+    DifferentialSolver solver = DifferentialSolver::Multigrid;
     double tolerance = 1e-8;
     CurvatureEdit edit;
+    Orientation orientation = Orientation::Right;
 };
 
 struct DifferentialReport {
@@ -54,22 +58,27 @@ struct DifferentialReport {
     double sizeRatio =
         1.0;  ///< rms distance from the mean vertex, over that of the spatial refinement
     eval::ThinPlateEnergy energy;
-    std::vector<std::string> warnings;
+};
+
+struct DifferentialResult {
+    Scene mesh;
+    DifferentialReport report;
 };
 
 /// Subdivides differential coordinates instead of positions, then finds the mesh that has them.
 ///
-/// Boundaries follow the curve rule (edge-only) whatever the scene's option, in coordinates and in
+/// Boundaries follow the curve rule (edge-only) whatever the model's option, in coordinates and in
 /// space. The result has RefineUniformly's topology, attributes and vertex order; handles lie where
 /// that puts them. Its size is not the spatial one's, and nothing rescales it.
 ///
-/// \param orientation  +1, or -1 for faces that are clockwise seen from outside
+/// \param job     told of creases, which get round, and of results that are not what was wanted
 /// \throws Error  as RefineUniformly; BadOption: contradicting levels or handles.  BadMesh:
 ///                boundaries that meet in a vertex, an edit of a vertex that is not there, with
 ///                cotangents a triangle without area. Unsupported: a Laplacian or rule that needs
 ///                triangles
+/// \throws Stopped
 /// Source  [Zhu11]
-Scene RefineDifferentially(Scene const& scene, int levels, DifferentialOptions const& options,
-                           double orientation, DifferentialReport& report);
+DifferentialResult RefineDifferentially(Model const& model, DifferentialOptions const& options,
+                                        Job& job);
 
 }  // namespace limn::engine

@@ -67,7 +67,7 @@ std::vector<eval::Curve> ReadPolylines(std::string const& path) {
 }
 
 void WritePolylines(std::string const& path, std::vector<eval::Curve> const& curves,
-                    bool isDouble) {
+                    Precision precision) {
     if (GetEnding(path) != ".obj") {
         throw Error(ErrorCode::BadOption,
                     fmt::format("`path` '{}': polylines are written as .obj", path));
@@ -77,7 +77,7 @@ void WritePolylines(std::string const& path, std::vector<eval::Curve> const& cur
     size_t first = 1;
     for (eval::Curve const& curve : curves) {
         for (eval::DoubleLanes const& p : curve.points) {
-            if (isDouble)
+            if (precision == Precision::Double)
                 fmt::format_to(to, "v {} {} {}\n", p[0], p[1], p[2]);
             else
                 fmt::format_to(to, "v {} {} {}\n", static_cast<float>(p[0]),

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "eval/differential/curve.h"
+#include "far_ext/types.h"
 
 namespace limn::engine {
 
@@ -16,9 +17,10 @@ namespace limn::engine {
 std::vector<eval::Curve> ReadPolylines(std::string const& path);
 
 /// Writes curves as 'v' and 'l' of an OBJ file, complete or not at all. Numbers read back as the
-/// same float, or the same double with `isDouble`.
+/// same float or double.
 ///
 /// \throws Error  BadOption: another ending than .obj; Io
-void WritePolylines(std::string const& path, std::vector<eval::Curve> const& curves, bool isDouble);
+void WritePolylines(std::string const& path, std::vector<eval::Curve> const& curves,
+                    Precision precision);
 
 }  // namespace limn::engine

@@ -11,6 +11,8 @@
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
+#include "engine/evaluate/evaluate.h"
+#include "engine/evaluate/place_table.h"
 #include "engine/io/file.h"
 #include "engine/io/mesh_reader.h"
 #include "engine/scene/same_faces.h"
@@ -116,11 +118,11 @@ std::string Describe(Scene const& frame, FaceDifference const& difference) {
 }
 
 /// Refuses a frame whose faces are not the mesh's.
-void CheckTopology(Scene const& mesh, Scene const& frame) {
-    auto const difference = FindFaceDifference(mesh.cage, frame.cage);
+void CheckTopology(Model const& model, Scene const& frame) {
+    auto const difference = FindFaceDifference(model.GetCage(), frame.cage);
     if (!difference) return;
     throw Error(ErrorCode::BadMesh, fmt::format("{}: not the topology of '{}': {}", frame.path,
-                                                mesh.path, Describe(frame, *difference)));
+                                                model.GetPath(), Describe(frame, *difference)));
 }
 
 }  // namespace
@@ -142,8 +144,7 @@ std::vector<Frame> FindFrames(std::string const& folderOrPattern) {
     return frames;
 }
 
-FramesReport EvaluateFrames(Scene const& scene, Far::TopologyRefiner const& refiner,
-                            PlaceList const& places, std::string const& placesPath,
+FramesReport EvaluateFrames(Model const& model, PlaceArrays const& places,
                             std::vector<Frame> const& frames, FrameOptions const& options,
                             Job& job) {
     if (options.outputPattern.find(kToken) == std::string::npos) {
@@ -153,14 +154,13 @@ FramesReport EvaluateFrames(Scene const& scene, Far::TopologyRefiner const& refi
                 "`outputPattern` {}: {{frame}} is missing; every frame goes to a file of its own",
                 options.outputPattern));
     }
-    eval::LimitSurface const surface(refiner);
-    eval::PlaceStencils const stencils(surface, LocatePlaces(scene, surface, places, placesPath));
+    eval::LimitSurface const surface(model.GetRefiner());
+    eval::PlaceStencils const stencils(surface, LocatePlaces(model, places));
     std::optional<eval::StencilEvaluator> evaluator;
     if (options.evaluator) evaluator.emplace(*options.evaluator, stencils.MakeRows());
-    double const orientation = options.isLeftHanded ? -1.0 : 1.0;
     auto const evaluate = [&](Scene const& frame) {
-        return evaluator ? stencils.Evaluate(frame.positions, orientation, *evaluator)
-                         : stencils.Evaluate(frame.positions, orientation);
+        return evaluator ? stencils.Evaluate(frame.positions, options.orientation, *evaluator)
+                         : stencils.Evaluate(frame.positions, options.orientation);
     };
 
     // Reading, evaluating, formatting and writing of one frame follow each other in one filter:
@@ -184,11 +184,12 @@ FramesReport EvaluateFrames(Scene const& scene, Far::TopologyRefiner const& refi
         return next++;
     };
     auto const work = [&](size_t i) {
-        CheckInterrupted();
+        job.CheckStopped();
         Scene const frame = ReadMesh(frames[i].path);
-        CheckTopology(scene, frame);
+        CheckTopology(model, frame);
         auto file = std::make_unique<AtomicFile>(report.outputs[i]);
-        file->Write(FormatSamples(places, surface, evaluate(frame), options.isDouble));
+        auto const values = MakeLimitValues(surface, places.faces, evaluate(frame));
+        file->Write(FormatValues(places, values, options.precision));
         files[i] = std::move(file);
         job.Advance();
     };
@@ -200,7 +201,9 @@ FramesReport EvaluateFrames(Scene const& scene, Far::TopologyRefiner const& refi
                          tbb::make_filter<size_t, void>(tbb::filter_mode::parallel, work));
     for (auto& file : files) file->Commit();
     job.Finish();
-    report.numWithoutLimit = CountWithoutLimit(places, surface);
+    report.numWithoutLimit =
+        static_cast<size_t>(std::count_if(places.faces.begin(), places.faces.end(),
+                                          [&](Index face) { return !surface.HasLimit(face); }));
     report.numRows = stencils.GetNumRows();
     return report;
 }

@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/evaluate/evaluate.h"
+#include "engine/evaluate/places.h"
 #include "engine/scene/job.h"
+#include "engine/scene/model.h"
 #include "eval/stencils/stencil_evaluator.h"
 
 namespace limn::engine {
@@ -27,8 +28,8 @@ std::vector<Frame> FindFrames(std::string const& folderOrPattern);
 
 struct FrameOptions {
     std::string outputPattern;  ///< with {frame}
-    bool isLeftHanded = false;
-    bool isDouble = false;  ///< 17 significant digits rather than 9
+    Orientation orientation = Orientation::Right;
+    Precision precision = Precision::Float;  ///< 9 or 17 significant digits
     /// What applies the table, in float; none: in double.
     std::optional<eval::EvaluatorKind> evaluator{};
 };
@@ -41,16 +42,16 @@ struct FramesReport {
 
 /// Evaluates the same places in every frame of a sequence: weights once, then per frame reading,
 /// one sparse product and writing, several frames at a time and no more than that in memory.
-/// Results agree with EvaluatePlaces on each frame to about 1e-12 of its size (with an evaluator:
+/// Results agree with EvaluateLimit on each frame to about 1e-12 of its size (with an evaluator:
 /// to float's rounding, which second derivatives and curvatures feel most).
 ///
 /// Files    All outputs appear once the last one is written, each complete; or none does.
-/// \param scene    the topology and its tags; frames give positions only, and must have the same
+/// \param model    the topology and its tags; frames give positions only, and must have the same
 ///                 faces
 /// \throws Error   BadMesh: a frame that cannot be parsed or has other faces (file named), and as
 ///                 LocatePlaces; BadOption: no {frame} in the output's name; Io
-FramesReport EvaluateFrames(Scene const& scene, Far::TopologyRefiner const& refiner,
-                            PlaceList const& places, std::string const& placesPath,
+/// \throws Stopped
+FramesReport EvaluateFrames(Model const& model, PlaceArrays const& places,
                             std::vector<Frame> const& frames, FrameOptions const& options,
                             Job& job);
 

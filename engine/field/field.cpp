@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include "engine/scene/job.h"
 #include "engine/scene/refine.h"
 #include "eval/differential/refine_values.h"
 #include "eval/forms/vertex_covectors.h"
@@ -50,7 +49,7 @@ Form Spread(std::vector<FieldStrength> const& strengths, Index count, char const
 /// Refuses or balances strengths that have nowhere to go.
 ///
 /// \param componentOf  of each element; -1 where it has no faces
-void Balance(Scene const& scene, std::vector<eval::FieldDesigner::Imbalance> const& imbalances,
+void Balance(Model const& model, std::vector<eval::FieldDesigner::Imbalance> const& imbalances,
              std::vector<int> const& componentOf, std::vector<int> const& componentOfFace,
              char const* what, bool isBalanced, Form& values) {
     for (auto const& imbalance : imbalances) {
@@ -63,7 +62,7 @@ void Balance(Scene const& scene, std::vector<eval::FieldDesigner::Imbalance> con
                 fmt::format("{}: the {} on the component of face {} add up to {:.6g}, not "
                             "0, and nothing can leave it; change "
                             "them, or let `isBalanced` spread the opposite over the component",
-                            scene.path, what, face, imbalance.sum));
+                            model.GetPath(), what, face, imbalance.sum));
         }
         double const count = static_cast<double>(
             std::count(componentOf.begin(), componentOf.end(), imbalance.component));
@@ -73,10 +72,17 @@ void Balance(Scene const& scene, std::vector<eval::FieldDesigner::Imbalance> con
     }
 }
 
-Form Design(Scene const& scene, Far::TopologyLevel const& level, FieldOptions const& options,
-            FieldAudit& audit) {
+/// The form on the control mesh, and what an audit says of it.
+struct Design {
+    Form form;
+    FieldAudit audit;
+};
+
+Design DesignControlForm(Model const& model, FieldOptions const& options, Job& job) {
+    auto const& level = model.GetLevel();
+    FieldAudit audit;
     auto const start = std::chrono::steady_clock::now();
-    eval::FieldDesigner designer(level, scene.positions, options.atBoundary);
+    eval::FieldDesigner designer(level, model.GetPositions(), options.atBoundary);
     auto const& ofFace = designer.GetComponents().ofFace;
     auto const& ofVertex = designer.GetComponentOfVertex();
     Form sources = Spread(options.sources, level.GetNumVertices(), "vertex");
@@ -87,33 +93,37 @@ Form Design(Scene const& scene, Far::TopologyLevel const& level, FieldOptions co
                         fmt::format("vertex {} has no faces, so that no field can flow there",
                                     source.element));
     }
-    Balance(scene, designer.FindSourceImbalance(sources), ofVertex, ofFace, "sources and sinks",
+    Balance(model, designer.FindSourceImbalance(sources), ofVertex, ofFace, "sources and sinks",
             options.isBalanced, sources);
-    Balance(scene, designer.FindVortexImbalance(vortices), ofFace, ofFace, "vortices",
+    Balance(model, designer.FindVortexImbalance(vortices), ofFace, ofFace, "vortices",
             options.isBalanced, vortices);
 
     audit.numGenerators = designer.CountHarmonics();
-    if (!options.harmonics.empty() &&
-        static_cast<int>(options.harmonics.size()) != audit.numGenerators) {
+    if (options.harmonics && static_cast<int>(options.harmonics->size()) != audit.numGenerators) {
         throw Error(
             ErrorCode::BadMesh,
             fmt::format("{}: `harmonics` gives {} coefficients; the surface has {} generators",
-                        scene.path, options.harmonics.size(), audit.numGenerators));
+                        model.GetPath(), options.harmonics->size(), audit.numGenerators));
     }
     Form form(static_cast<size_t>(level.GetNumEdges()), 0.0);
+    if (options.edges && options.edges->size() != form.size()) {
+        throw Error(ErrorCode::BadMesh,
+                    fmt::format("{}: {} values along edges; the mesh has {} edges", model.GetPath(),
+                                options.edges->size(), form.size()));
+    }
     if (!options.sources.empty()) AddTo(form, designer.MakeGradient(sources));
     if (!options.vortices.empty()) AddTo(form, designer.MakeVortex(vortices));
-    CheckInterrupted();
-    if (!options.harmonics.empty()) {
+    job.CheckStopped();
+    if (options.harmonics) {
         auto const& harmonics = designer.GetHarmonics();
         for (size_t i = 0; i < harmonics.size(); ++i)
-            AddTo(form, harmonics[i], options.harmonics[i]);
+            AddTo(form, harmonics[i], (*options.harmonics)[i]);
     }
-    if (!options.edges.empty()) AddTo(form, options.edges);
+    if (options.edges) AddTo(form, *options.edges);
     if (!options.wanted.empty())
-        AddTo(form, eval::MatchVectors(level, scene.positions, options.wanted));
+        AddTo(form, eval::MatchVectors(level, model.GetPositions(), options.wanted));
 
-    CheckInterrupted();
+    job.CheckStopped();
     auto const parts = designer.Decompose(form);
     audit.gradientNorm = designer.FindNorm(parts.gradient);
     audit.vortexNorm = designer.FindNorm(parts.vortex);
@@ -126,7 +136,7 @@ Form Design(Scene const& scene, Far::TopologyLevel const& level, FieldOptions co
     audit.maxDivergenceOfVortex = relative(designer.FindInflow(parts.vortex), parts.vortex);
     audit.solveSeconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return form;
+    return {std::move(form), audit};
 }
 
 /// The largest entry of A B - C D over `numColumns` columns, row by row.
@@ -159,9 +169,9 @@ double FindLargestDifference(far_ext::SparseRows const& a, far_ext::SparseRows c
 }
 
 /// Refines the form, and checks at each step that its stencils commute.
-Form Subdivide(Far::TopologyRefiner const& refiner, Form form, FieldAudit& audit) {
+Form Subdivide(Far::TopologyRefiner const& refiner, Form form, FieldAudit& audit, Job& job) {
     for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
-        CheckInterrupted();
+        job.CheckStopped();
         auto const coarse = refiner.GetLevel(level - 1), fine = refiner.GetLevel(level);
         auto const step = far_ext::BuildFormStencils(refiner, level);
         auto const s0 =
@@ -206,28 +216,28 @@ void FindFaceVectors(Field& field) {
 
 }  // namespace
 
-Field DesignField(Scene const& scene, Far::TopologyRefiner const& refiner,
-                  FieldOptions const& options, FieldAudit& audit) {
-    far_ext::CheckForms(refiner);
-    Form const control = Design(scene, refiner.GetLevel(0), options, audit);
+Field DesignField(Model const& model, FieldOptions const& options, Job& job) {
+    far_ext::CheckForms(model.GetRefiner());
+    Design design = DesignControlForm(model, options, job);
 
     int levels = options.levels;
-    if (options.hasVertexVectors && !far_ext::HasRefinedFaces(scene.cage))
+    if (options.hasVertexVectors && !far_ext::HasRefinedFaces(model.GetCage()))
         levels = std::max(levels, 1);
     Field field;
-    field.refined = MakeUniformRefiner(scene, levels);
-    field.form = Subdivide(*field.refined, control, audit);
-    field.mesh = RefineAllButPositions(scene, *field.refined);
-    field.mesh.positions = scene.positions;
+    field.audit = std::move(design.audit);
+    field.refined = MakeUniformRefiner(model.GetCage(), model.GetPath(), levels);
+    field.form = Subdivide(*field.refined, std::move(design.form), field.audit, job);
+    field.mesh = RefineAllButPositions(model, *field.refined, job);
+    field.mesh.positions = model.GetPositions();
     for (int level = 1; level <= levels; ++level)
         field.mesh.positions = eval::RefineValues<3>(*field.refined, level, field.mesh.positions);
     if (options.hasVertexVectors) FindVertexVectors(field);
     FindFaceVectors(field);
 
     auto const last = field.refined->GetLevel(levels);
-    audit.indices = eval::FindFieldIndices(last, field.form);
+    field.audit.indices = eval::FindFieldIndices(last, field.form);
     for (int euler : far_ext::FaceComponents::Find(last).FindEulerCharacteristics(last))
-        audit.eulerCharacteristic += euler;
+        field.audit.eulerCharacteristic += euler;
     return field;
 }
 

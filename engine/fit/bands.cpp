@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/fit/bands.h"
 
+#include <utility>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "engine/scene/job.h"
-#include "engine/scene/same_faces.h"
+#include "eval/fit/decompose.h"
 #include "far_ext/error.h"
 #include "far_ext/rows/points.h"
 
 namespace limn::engine {
 
-MeshExtent MeasureExtent(Scene const& scene, Far::TopologyLevel const& level) {
+MeshExtent MeasureExtent(Model const& model, std::span<double const> positions) {
     MeshExtent extent;
-    far_ext::Points const points(scene.positions);
+    far_ext::Points const points(positions);
     Eigen::Vector3d low = points[0], high = low;
     for (size_t vertex = 1; vertex < points.GetCount(); ++vertex) {
         low = low.cwiseMin(points[vertex]);
@@ -24,15 +25,16 @@ MeshExtent MeasureExtent(Scene const& scene, Far::TopologyLevel const& level) {
         extent.low[c] = low[static_cast<Eigen::Index>(c)];
         extent.high[c] = high[static_cast<Eigen::Index>(c)];
     }
+    auto const& level = model.GetLevel();
     for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
         if (level.IsEdgeBoundary(edge) || level.IsEdgeNonManifold(edge)) return extent;
     }
     // Tetrahedra from a point near by, which keeps the digits of a mesh far from the origin.
     double sixfold = 0.0;
     size_t corner = 0;
-    for (int size : scene.cage.faceSizes) {
+    for (int size : model.GetCage().faceSizes) {
         auto const at = [&](size_t i) -> Eigen::Vector3d {
-            return points[scene.cage.faceVertices[corner + i]] - low;
+            return points[model.GetCage().faceVertices[corner + i]] - low;
         };
         for (int i = 1; i + 1 < size; ++i) sixfold += at(0).dot(at(i).cross(at(i + 1)));
         corner += size;
@@ -41,59 +43,46 @@ MeshExtent MeasureExtent(Scene const& scene, Far::TopologyLevel const& level) {
     return extent;
 }
 
-std::vector<std::vector<double>> SplitIntoBands(Scene const& scene, eval::LimitOperator const& A,
-                                                int count) {
-    eval::RequireFinite(scene.positions, 3);
+Bands SplitIntoBands(Model const& model, int count, double alpha, Job& job) {
+    auto const A = eval::LimitOperator::Build(model.GetRefiner(), 0, {.alpha = alpha});
     std::vector<std::vector<double>> bands;
-    std::vector<double> rest = scene.positions;
+    std::vector<double> rest = model.GetPositions();
     eval::ApplyHighPass(A, 3, count, rest, [&](int i, std::span<double const> part) {
-        CheckInterrupted();
+        job.CheckStopped();
         // Band i is (E-A)^i A M = (E-A)^i M - (E-A)^(i+1) M.
         if (i > 0) {
             for (size_t k = 0; k < part.size(); ++k) bands.back()[k] -= part[k];
         }
         bands.emplace_back(part.begin(), part.end());
     });
-    return bands;
+    std::vector<double> remainder = std::move(bands.back());
+    bands.pop_back();
+    return {std::move(bands), std::move(remainder)};
 }
 
-namespace {
-
-std::string Describe(Scene const& from, Scene const& to, FaceDifference const& difference) {
-    switch (difference.kind) {
-        case FaceDifference::Kind::NumVertices:
-            return fmt::format("{} and {} vertices", difference.a, difference.b);
-        case FaceDifference::Kind::NumFaces:
-            return fmt::format("{} and {} faces", difference.a, difference.b);
-        default:
-            return fmt::format("{} has other vertices than {}", from.NameFace(difference.face),
-                               to.NameFace(difference.face));
+std::vector<double> Denoise(Model const& model, DenoiseOptions const& options, Job& job) {
+    auto const A = eval::LimitOperator::Build(model.GetRefiner(), 0, {.alpha = options.alpha});
+    std::vector<double> positions = model.GetPositions();
+    for (int step = 0; step < options.steps; ++step) {
+        job.CheckStopped();
+        eval::Denoise(A, 3, options.detail, 1, positions);
     }
+    return positions;
 }
 
-void RequireSameFaces(Scene const& from, Scene const& to) {
-    auto const difference = FindFaceDifference(from.cage, to.cage);
-    if (!difference) return;
-    throw Error(
-        ErrorCode::BadMesh,
-        fmt::format("{} and {} do not have the same faces: {}; a morph needs the same vertices and "
-                    "faces in the same order",
-                    from.path, to.path, Describe(from, to, *difference)));
-}
-
-}  // namespace
-
-void Morph(Scene const& from, Scene const& to, eval::LimitOperator const& A, int detail,
-           double rate, int steps, VisitFrame const& visit) {
-    RequireSameFaces(from, to);
-    eval::RequireFinite(from.positions, 3);
-    eval::RequireFinite(to.positions, 3);
-    std::vector<double> Q = from.positions;
-    for (int step = 1; step <= steps; ++step) {
-        CheckInterrupted();
-        eval::MorphStep(A, 3, detail, rate, to.positions, Q);
-        visit(step, Q);
+std::vector<double> Sharpen(Model const& model, SharpenOptions const& options, Job& job) {
+    if (options.first < 1 || options.first > options.last) {
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("bands {} to {} are none; they begin at 1, and are given in order",
+                                options.first, options.last));
     }
+    auto const A = eval::LimitOperator::Build(model.GetRefiner(), 0, {.alpha = options.alpha});
+    std::vector<double> positions = model.GetPositions();
+    for (int step = 0; step < options.steps; ++step) {
+        job.CheckStopped();
+        eval::Sharpen(A, 3, options.first, options.last, 1, positions);
+    }
+    return positions;
 }
 
 }  // namespace limn::engine

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "engine/scene/scene.h"
-#include "eval/fit/decompose.h"
+#include "engine/scene/job.h"
+#include "engine/scene/model.h"
 
 namespace limn::engine {
 
@@ -17,22 +17,34 @@ struct MeshExtent {
     std::array<double, 3> low{}, high{};
 };
 
-MeshExtent MeasureExtent(Scene const& scene, Far::TopologyLevel const& level);
+/// \param positions  3 per vertex, the model's or others
+MeshExtent MeasureExtent(Model const& model, std::span<double const> positions);
 
-/// The bands of a scene's positions, lowest frequencies first, then the remainder: they add up to
-/// the positions.
-///
-/// \throws Error  BadMesh: a coordinate that is no number
-std::vector<std::vector<double>> SplitIntoBands(Scene const& scene, eval::LimitOperator const& A,
-                                                int count);
+/// Frequency bands of a mesh's positions, 3 numbers per vertex each; all add up to the positions.
+struct Bands {
+    std::vector<std::vector<double>> bands;  ///< lowest frequencies first
+    std::vector<double> remainder;
+};
 
-/// Frames Q_1 to Q_steps on the way from `from` to `to`.
-///
-/// \param visit   receives each frame's positions
-/// \throws Error  BadMesh where the meshes do not have the same faces (the first difference is
-///                named), or a coordinate is no number
-using VisitFrame = std::function<void(int step, std::vector<double> const& positions)>;
-void Morph(Scene const& from, Scene const& to, eval::LimitOperator const& A, int detail,
-           double rate, int steps, VisitFrame const& visit);
+/// \param alpha   generalised Catmull-Clark in the first step, 0 (plain) to 1
+/// \throws Error  BadOption: alpha outside [0, 1] or with a scheme that has none
+/// \throws Stopped
+Bands SplitIntoBands(Model const& model, int count, double alpha, Job& job);
+
+/// The mesh's positions with its lowest bands only.
+struct DenoiseOptions {
+    int detail = 2;      ///< the last band to keep
+    int steps = 1;       ///< how often
+    double alpha = 0.0;  ///< as SplitIntoBands
+};
+std::vector<double> Denoise(Model const& model, DenoiseOptions const& options, Job& job);
+
+/// The mesh's positions with some bands added again.
+struct SharpenOptions {
+    int first = 2, last = 4;  ///< powers of the high-pass filter, from 1
+    int steps = 1;
+    double alpha = 0.0;
+};
+std::vector<double> Sharpen(Model const& model, SharpenOptions const& options, Job& job);
 
 }  // namespace limn::engine

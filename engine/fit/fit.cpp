@@ -36,11 +36,12 @@ void AddAlphaStep(eval::LimitOperator const& A, double alpha, std::span<double c
 }
 
 /// One step of generalised Catmull-Clark. A vertex's child has its own number (OpenSubdiv's order).
-Scene RefineWithAlpha(Scene const& control, eval::LimitOperator const& A, double alpha) {
-    Scene fine = RefineUniformly(control, 1, false);
-    AddAlphaStep(A, alpha, control.positions, 3, fine.positions.data());
-    for (size_t i = 0; i < control.primvars.size(); ++i) {
-        auto const& from = control.primvars[i];
+Scene RefineWithAlpha(Model const& control, double alpha, Job& job) {
+    auto const A = eval::LimitOperator::Build(control.GetRefiner(), 0, {.alpha = alpha});
+    Scene fine = RefineUniformly(control, {.levels = 1}, job);
+    AddAlphaStep(A, alpha, control.GetPositions(), 3, fine.positions.data());
+    for (size_t i = 0; i < control.GetPrimvars().size(); ++i) {
+        auto const& from = control.GetPrimvars()[i];
         std::vector<double> const values(from.values.begin(), from.values.end());
         std::vector<double> children(fine.primvars[i].values.begin(),
                                      fine.primvars[i].values.end());
@@ -53,12 +54,13 @@ Scene RefineWithAlpha(Scene const& control, eval::LimitOperator const& A, double
 
 /// Refinements towards a vertex that leave a hundredth of the tolerance: each brings the place
 /// evaluated nearer by 1/2, at vertices of high valence only by 0.66.
-int ChooseDepth(Scene const& scene, double size, double tolerance) {
+int ChooseDepth(Scene const& mesh, double size, double tolerance) {
+    auto const& cage = mesh.cage;
     double longest = 0.0;
     size_t corner = 0;
-    far_ext::Points const points(scene.positions);
-    auto const point = [&](size_t k) { return points[scene.cage.faceVertices[k]]; };
-    for (int faceSize : scene.cage.faceSizes) {
+    far_ext::Points const points(mesh.positions);
+    auto const point = [&](size_t k) { return points[cage.faceVertices[k]]; };
+    for (int faceSize : cage.faceSizes) {
         size_t const n = faceSize;
         for (size_t i = 0; i < n; ++i)
             longest = std::max(longest, (point(corner + i) - point(corner + (i + 1) % n)).norm());
@@ -70,12 +72,14 @@ int ChooseDepth(Scene const& scene, double size, double tolerance) {
 }
 
 /// \param mesh  whose vertex i, for those of `data`, must have its limit at the data
-Certificate Certify(Scene const& mesh, std::span<double const> data, double tolerance) {
-    auto const refiner = far_ext::CreateRefiner(mesh.cage);
-    eval::LimitSurface const surface(*refiner);
+/// \param refiner  the mesh's
+Certificate Certify(Scene const& mesh, Far::TopologyRefiner const& refiner,
+                    std::span<double const> data, double tolerance, Job& job) {
+    eval::LimitSurface const surface(refiner);
     double const size = eval::FindSize(data, 3);
-    auto const limits = eval::EvaluateVertexLimits(
-        surface, mesh.positions, 3, ChooseDepth(mesh, size, tolerance), CheckInterrupted);
+    auto const limits =
+        eval::EvaluateVertexLimits(surface, mesh.positions, 3, ChooseDepth(mesh, size, tolerance),
+                                   [&] { job.CheckStopped(); });
     Certificate certificate;
     double sum = 0.0;
     far_ext::Points const reached(limits.values), wanted(data);
@@ -98,24 +102,21 @@ bool FitResult::HasConverged() const {
                                            [](auto const& primvar) { return primvar.converged; });
 }
 
-FitResult FitToLimit(Scene const& scene, FitOptions const& options) {
-    auto const refiner = far_ext::CreateRefiner(scene.cage);
+FitResult FitToLimit(Model const& model, FitOptions const& options, Job& job) {
     auto const start = std::chrono::steady_clock::now();
-    eval::Interpolator const interpolator(*refiner, 0, {.alpha = options.alpha});
+    eval::Interpolator const interpolator(model.GetRefiner(), 0, {.alpha = options.alpha});
     eval::InterpolateOptions const solve{.method = options.method,
                                          .tolerance = options.tolerance,
                                          .maxIterations = options.maxIterations,
-                                         .onIteration = [](int, double) { CheckInterrupted(); }};
+                                         .onIteration = [&](int, double) { job.CheckStopped(); }};
     FitResult result;
-    result.mesh = scene;
-    result.report = interpolator.Solve(scene.positions, 3, result.mesh.positions, solve);
-    for (size_t i = 0; i < scene.primvars.size(); ++i) {
-        auto const& values = scene.primvars[i].values;
-        std::vector<double> const data(values.begin(), values.end());
+    result.mesh = model.MakeScene();
+    result.report = interpolator.Solve(model.GetPositions(), 3, result.mesh.positions, solve);
+    for (Primvar& primvar : result.mesh.primvars) {
+        std::vector<double> const data(primvar.values.begin(), primvar.values.end());
         std::vector<double> fitted(data.size());
-        result.primvars.push_back(
-            interpolator.Solve(data, scene.primvars[i].numChannels, fitted, solve));
-        std::transform(fitted.begin(), fitted.end(), result.mesh.primvars[i].values.begin(),
+        result.primvars.push_back(interpolator.Solve(data, primvar.numChannels, fitted, solve));
+        std::transform(fitted.begin(), fitted.end(), primvar.values.begin(),
                        [](double x) { return static_cast<float>(x); });
     }
     std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - start;
@@ -124,13 +125,13 @@ FitResult FitToLimit(Scene const& scene, FitOptions const& options) {
         result.report.singularComponents.empty() ? interpolator.EstimateSmallestEigenvalue() : 0.0;
 
     if (options.alpha == 0.0) {
-        result.certificate = Certify(result.mesh, scene.positions, options.tolerance);
+        result.certificate =
+            Certify(result.mesh, model.GetRefiner(), model.GetPositions(), options.tolerance, job);
         return result;
     }
-    Scene fine = RefineWithAlpha(result.mesh,
-                                 eval::LimitOperator::Build(*refiner, 0, {.alpha = options.alpha}),
-                                 options.alpha);
-    result.certificate = Certify(fine, scene.positions, options.tolerance);
+    Scene fine = RefineWithAlpha(Model::Build(result.mesh), options.alpha, job);
+    result.certificate = Certify(fine, *far_ext::CreateRefiner(fine.cage), model.GetPositions(),
+                                 options.tolerance, job);
     if (!options.keepsTopology) result.mesh = std::move(fine);
     return result;
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/scene/job.h"
-#include "engine/scene/scene.h"
+#include "engine/scene/model.h"
 #include "eval/fit/interpolate.h"
 
 namespace limn::engine {
@@ -29,7 +29,7 @@ struct FitResult {
     Scene mesh;  ///< the control mesh; one level finer than the input with alpha, unless
                  ///< keepsTopology
     eval::SolveReport report;                 ///< of the positions
-    std::vector<eval::SolveReport> primvars;  ///< of the scene's primvars, in their order
+    std::vector<eval::SolveReport> primvars;  ///< of the model's primvars, in their order
     Certificate certificate;
     double lambdaMin = 0.0;  ///< smallest eigenvalue of A, estimated; 0 if a component is singular
     double solveSeconds = 0.0;
@@ -37,13 +37,13 @@ struct FitResult {
     bool HasConverged() const;
 };
 
-/// Finds the control mesh whose limit surface passes through the scene's vertices, and fits its
+/// Finds the control mesh whose limit surface passes through the model's vertices, and fits its
 /// primvars the same way. Not converging is an answer; the mesh is then the best there is.
 ///
 /// \throws Error        BadMesh: a coordinate that is no number.  BadOption: alpha outside [0, 1]
 ///                      or with a scheme that has none
-/// \throws Interrupted
+/// \throws Stopped
 /// Source  [LaiCheng11] Sec. 4; [Limit 6]
-FitResult FitToLimit(Scene const& scene, FitOptions const& options);
+FitResult FitToLimit(Model const& model, FitOptions const& options, Job& job);
 
 }  // namespace limn::engine

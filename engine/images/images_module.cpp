@@ -45,26 +45,4 @@ ImagesModule const& LoadImagesModule() {
     return *module;
 }
 
-std::vector<float> ReadFirstChannel(std::string const& path, int& width, int& height) {
-    struct Target {
-        std::vector<float> values;
-        int width = 0, height = 0;
-    } target;
-    auto const allocate = [](void* user, int w, int h) {
-        auto& to = *static_cast<Target*>(user);
-        to.width = w;
-        to.height = h;
-        to.values.resize(static_cast<size_t>(w) * static_cast<size_t>(h));
-        return to.values.data();
-    };
-    char reason[512] = "";
-    if (!LoadImagesModule().readFirstChannel(path.c_str(), allocate, &target, reason,
-                                             sizeof reason)) {
-        throw Error(ErrorCode::Io, fmt::format("{}: cannot be read as an image: {}", path, reason));
-    }
-    width = target.width;
-    height = target.height;
-    return std::move(target.values);
-}
-
 }  // namespace limn::engine

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
-#include <vector>
 
 namespace limn::engine {
 
@@ -23,12 +21,6 @@ struct ImagesModule {
 
 /// \throws Error  Io if the module is missing beside the program and in its library folder
 ImagesModule const& LoadImagesModule();
-
-/// The first channel of an image, rows from the top; 8 and 16 bits per value become 0 to 1, floats
-/// stay as they are.
-///
-/// \throws Error  Io: a file that cannot be read, or is no image
-std::vector<float> ReadFirstChannel(std::string const& path, int& width, int& height);
 
 }  // namespace limn::engine
 

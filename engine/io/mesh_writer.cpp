@@ -19,8 +19,8 @@ namespace limn::engine {
 namespace {
 
 /// The shortest digits that read back as the same number.
-void AppendNumber(fmt::memory_buffer& to, double value, bool isDouble) {
-    if (isDouble)
+void AppendNumber(fmt::memory_buffer& to, double value, Precision precision) {
+    if (precision == Precision::Double)
         fmt::format_to(std::back_inserter(to), "{}", value);
     else
         fmt::format_to(std::back_inserter(to), "{}", static_cast<float>(value));
@@ -32,7 +32,7 @@ void Append(fmt::memory_buffer& to, std::string_view text) {
 
 class ObjText {
 public:
-    ObjText(Scene const& scene, bool isDouble) : _scene(scene), _isDouble(isDouble) {}
+    ObjText(Scene const& scene, Precision precision) : _scene(scene), _precision(precision) {}
 
     std::string Make() {
         AppendRows("v", _scene.positions, 3);
@@ -49,7 +49,7 @@ private:
             Append(_text, keyword);
             for (size_t c = 0; c < length; ++c) {
                 _text.push_back(' ');
-                AppendNumber(_text, values[i + c], _isDouble);
+                AppendNumber(_text, values[i + c], _precision);
             }
             _text.push_back('\n');
         }
@@ -111,13 +111,14 @@ private:
     }
 
     Scene const& _scene;
-    bool _isDouble;
+    Precision _precision;
     fmt::memory_buffer _text;
 };
 
 class PlyBytes {
 public:
-    PlyBytes(Scene const& scene, bool isDouble) : _scene(scene), _isDouble(isDouble) {}
+    PlyBytes(Scene const& scene, Precision precision)
+        : _scene(scene), _isDouble(precision == Precision::Double) {}
 
     std::string Make() {
         AppendHeader();
@@ -190,9 +191,9 @@ void RequireMeshEnding(std::string const& path) {
                 fmt::format("`path` '{}': a mesh is written as .obj or .ply", path));
 }
 
-std::string FormatMesh(std::string const& path, Scene const& scene, bool isDouble,
-                       std::vector<std::string>* warnings) {
+MeshBytes FormatMesh(std::string const& path, Scene const& scene, Precision precision) {
     RequireMeshEnding(path);
+    bool const isDouble = precision == Precision::Double;
     double const largest =
         isDouble ? std::numeric_limits<double>::max() : std::numeric_limits<float>::max();
     auto const isWritable = [&](double value) { return std::abs(value) <= largest; };
@@ -202,27 +203,32 @@ std::string FormatMesh(std::string const& path, Scene const& scene, bool isDoubl
                     fmt::format("'{}': a coordinate is no number or does not fit a {}", path,
                                 isDouble ? "double" : "float; use `precision` double"));
     }
+    MeshBytes file;
     if (GetEnding(path) == ".obj") {
-        if (warnings && !scene.primvars.empty())
-            warnings->push_back(path + ": OBJ holds no primvars; they are left out");
-        return ObjText(scene, isDouble).Make();
+        if (!scene.primvars.empty())
+            file.leftOut.push_back(path + ": OBJ holds no primvars; they are left out");
+        file.bytes = ObjText(scene, precision).Make();
+        return file;
     }
     auto const& cage = scene.cage;
-    if (warnings &&
-        (!cage.creaseSharpness.empty() || !cage.cornerSharpness.empty() || !cage.holes.empty())) {
-        warnings->push_back(path + ": PLY holds no creases, corners or holes; they are left out");
-    }
-    return PlyBytes(scene, isDouble).Make();
+    if (!cage.creaseSharpness.empty() || !cage.cornerSharpness.empty() || !cage.holes.empty())
+        file.leftOut.push_back(path +
+                               ": PLY holds no creases, corners or holes; they are left out");
+    file.bytes = PlyBytes(scene, precision).Make();
+    return file;
 }
 
-void WriteMesh(std::string const& path, Scene const& scene, bool isDouble,
-               std::vector<std::string>* warnings) {
-    WriteFileAtomically(path, FormatMesh(path, scene, isDouble, warnings));
+std::vector<std::string> WriteMesh(std::string const& path, Scene const& scene,
+                                   Precision precision) {
+    auto [bytes, leftOut] = FormatMesh(path, scene, precision);
+    WriteFileAtomically(path, bytes);
+    return leftOut;
 }
 
-void MeshSequence::Add(std::string const& path, Scene const& scene,
-                       std::vector<std::string>* warnings) {
-    Add(path, FormatMesh(path, scene, _isDouble, warnings));
+std::vector<std::string> MeshSequence::Add(std::string const& path, Scene const& scene) {
+    auto [bytes, leftOut] = FormatMesh(path, scene, _precision);
+    Add(path, bytes);
+    return leftOut;
 }
 
 void MeshSequence::Add(std::string const& path, std::string const& bytes) {

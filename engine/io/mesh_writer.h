@@ -13,26 +13,33 @@ namespace limn::engine {
 /// \throws Error  BadOption unless the path ends with .obj or .ply
 void RequireMeshEnding(std::string const& path);
 
-/// Writes a mesh as OBJ (with UVs, normals, groups and tags) or PLY (with corner UVs and primvars,
-/// without tags or groups) by its ending in small or capital letters, complete or not at all.
-/// Numbers read back as the same float, or the same double with `isDouble`.
-///
-/// \param warnings  receives what the format cannot hold; may be null
-/// \throws Error    BadOption: another ending. Io
-void WriteMesh(std::string const& path, Scene const& scene, bool isDouble,
-               std::vector<std::string>* warnings);
+/// The bytes of a mesh file, and what its format cannot hold, one line each.
+struct MeshBytes {
+    std::string bytes;
+    std::vector<std::string> leftOut;
+};
 
-/// The bytes WriteMesh would write. \throws Error as WriteMesh, but for Io
-std::string FormatMesh(std::string const& path, Scene const& scene, bool isDouble,
-                       std::vector<std::string>* warnings);
+/// A mesh as OBJ (with UVs, normals, groups and tags) or PLY (with corner UVs and primvars, without
+/// tags or groups) by its path's ending in small or capital letters. Numbers read back as the same
+/// float or double.
+///
+/// \throws Error    BadOption: another ending
+MeshBytes FormatMesh(std::string const& path, Scene const& scene, Precision precision);
+
+/// Writes a mesh, complete or not at all.
+///
+/// \return what the format cannot hold
+/// \throws Error    as FormatMesh; Io
+std::vector<std::string> WriteMesh(std::string const& path, Scene const& scene,
+                                   Precision precision);
 
 /// Several meshes, and files beside them, that appear together or not at all.
 class MeshSequence {
 public:
-    explicit MeshSequence(bool isDouble) : _isDouble(isDouble) {}
+    explicit MeshSequence(Precision precision) : _precision(precision) {}
 
-    /// Writes a mesh under a temporary name. \throws Error as WriteMesh
-    void Add(std::string const& path, Scene const& scene, std::vector<std::string>* warnings);
+    /// Writes a mesh under a temporary name. As WriteMesh
+    std::vector<std::string> Add(std::string const& path, Scene const& scene);
 
     /// Writes another file under a temporary name. \throws Error Io
     void Add(std::string const& path, std::string const& bytes);
@@ -44,7 +51,7 @@ public:
     void Commit();
 
 private:
-    bool _isDouble;
+    Precision _precision;
     std::vector<std::unique_ptr<AtomicFile>> _files;
     std::vector<std::string> _paths;
 };

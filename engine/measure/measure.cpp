@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <utility>
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
-#include "engine/scene/job.h"
 #include "eval/surface/graded_points.h"
 #include "eval/surface/surface_sample.h"
 #include "far_ext/rows/points.h"
@@ -71,11 +72,11 @@ CurvatureStatistics MakeStatistics(Sums const& sums, double sum, double squares,
 
 class Surveyor {
 public:
-    Surveyor(Scene const& scene, Far::TopologyRefiner const& refiner, double orientation)
-        : _scene(scene),
-          _refiner(refiner),
-          _level(refiner.GetLevel(0)),
+    Surveyor(Model const& model, Orientation orientation, Job& job)
+        : _model(model),
+          _level(model.GetLevel()),
           _orientation(orientation),
+          _job(job),
           _components(far_ext::FaceComponents::Find(_level)) {}
 
     std::vector<Sums> SurveyLimit() const;
@@ -85,23 +86,23 @@ public:
 private:
     std::vector<std::string> FindReasons(MeasuredSurface surface) const;
 
-    Scene const& _scene;
-    Far::TopologyRefiner const& _refiner;
-    Level _level;
-    double _orientation;
+    Model const& _model;
+    Level const& _level;
+    Orientation _orientation;
+    Job& _job;
     far_ext::FaceComponents _components;
 };
 
 /// Sums of faces, added in order: the same bits whatever the threads.
 std::vector<Sums> Surveyor::SurveyLimit() const {
-    eval::LimitSurface const surface(_refiner);
+    eval::LimitSurface const surface(_model.GetRefiner());
     eval::GradedPoints const points(surface);
     std::vector<Sums> ofFaces(_components.ofFace.size());
     tbb::enumerable_thread_specific<eval::FaceTree> trees(
-        [&] { return eval::FaceTree(surface, _scene.positions, 3); });
+        [&] { return eval::FaceTree(surface, _model.GetPositions(), 3); });
     tbb::parallel_for(
         tbb::blocked_range<Index>(0, surface.GetNumFaces(), 64), [&](auto const& faces) {
-            CheckInterrupted();
+            _job.CheckStopped();
             eval::FaceTree& tree = trees.local();
             for (Index face = faces.begin(); face < faces.end(); ++face) {
                 if (!surface.HasLimit(face)) continue;
@@ -124,20 +125,20 @@ std::vector<Sums> Surveyor::SurveyLimit() const {
 
 std::vector<Sums> Surveyor::SurveyMesh() const {
     std::vector<Sums> ofComponents(static_cast<size_t>(_components.count));
-    auto const curvature = eval::MeasureMeshCurvature(_level, _scene.positions, _orientation);
+    auto const curvature = eval::MeasureMeshCurvature(_level, _model.GetPositions(), _orientation);
     for (Index vertex = 0; vertex < _level.GetNumVertices(); ++vertex) {
         if (!(curvature.areas[vertex] > 0.0)) continue;
         Sums& sums = ofComponents[_components.ofFace[_level.GetVertexFaces(vertex)[0]]];
         sums.AddCurvature(curvature.areas[vertex], curvature.k1[vertex], curvature.k2[vertex]);
     }
-    auto const faceNormals = eval::FindFaceNormals(_level, _scene.positions);
-    far_ext::Points const points(_scene.positions), normals(faceNormals);
+    auto const faceNormals = eval::FindFaceNormals(_level, _model.GetPositions());
+    far_ext::Points const points(_model.GetPositions()), normals(faceNormals);
     for (Index face = 0; face < _level.GetNumFaces(); ++face) {
         auto const vertices = _level.GetFaceVertices(face);
         double heights = 0.0;
         for (Index vertex : vertices)
             heights += points[vertex].dot(normals[face]) / vertices.size();
-        ofComponents[_components.ofFace[face]].volume += _orientation * heights / 3.0;
+        ofComponents[_components.ofFace[face]].volume += GetSign(_orientation) * heights / 3.0;
     }
     return ofComponents;
 }
@@ -149,7 +150,7 @@ std::vector<std::string> Surveyor::FindReasons(MeasuredSurface surface) const {
     for (Index face = 0; face < _level.GetNumFaces(); ++face) {
         std::string& reason = reasons[_components.ofFace[face]];
         if (!reason.empty()) continue;
-        if (isLimit && _scene.cage.scheme == Sdc::SCHEME_BILINEAR)
+        if (isLimit && _model.GetCage().scheme == Sdc::SCHEME_BILINEAR)
             reason = "a bilinear surface has a crease along every edge";
         if (isLimit && _level.IsFaceHole(face)) reason = "it has a hole";
         for (Index edge : _level.GetFaceEdges(face)) {
@@ -189,10 +190,10 @@ Measurement Surveyor::Conclude(std::vector<Sums> const& ofComponents,
     bool isClosed = true;
     for (Index edge = 0; edge < _level.GetNumEdges(); ++edge)
         isClosed &= _level.GetEdgeFaces(edge).size() == 2;
-    if (isClosed && _scene.cage.holes.empty()) result.volume = all.volume;
+    if (isClosed && _model.GetCage().holes.empty()) result.volume = all.volume;
     result.area = all.area;
     if (surface == MeasuredSurface::Mesh) {  // boundary vertices have area, too
-        auto const normals = eval::FindFaceNormals(_level, _scene.positions);
+        auto const normals = eval::FindFaceNormals(_level, _model.GetPositions());
         result.area = 0.0;
         for (size_t i = 0; i < normals.size(); i += 3)
             result.area += std::hypot(normals[i], normals[i + 1], normals[i + 2]);
@@ -206,19 +207,18 @@ Measurement Surveyor::Conclude(std::vector<Sums> const& ofComponents,
 }
 
 /// k1 and k2 of every vertex, exact ones of the limit.
-std::array<std::vector<double>, 2> FindLimitCurvature(Scene const& scene,
-                                                      Far::TopologyRefiner const& refiner,
-                                                      double orientation) {
-    eval::LimitSurface const surface(refiner);
-    eval::FaceTree tree(surface, scene.positions, 3);
-    std::vector<char> isDone(static_cast<size_t>(scene.cage.numVertices), 0);
+std::array<std::vector<double>, 2> FindLimitCurvature(Model const& model, Orientation orientation,
+                                                      Job& job) {
+    eval::LimitSurface const surface(model.GetRefiner());
+    eval::FaceTree tree(surface, model.GetPositions(), 3);
+    std::vector<char> isDone(static_cast<size_t>(model.GetCage().numVertices), 0);
     std::vector<double> const zeros(isDone.size(), 0.0);
     std::array<std::vector<double>, 2> curvatures{zeros, zeros};
     for (Index face = 0; face < surface.GetNumFaces(); ++face) {
         if (!surface.HasLimit(face)) continue;
-        CheckInterrupted();
+        job.CheckStopped();
         tree.Bind(face);
-        auto const vertices = refiner.GetLevel(0).GetFaceVertices(face);
+        auto const vertices = model.GetLevel().GetFaceVertices(face);
         for (int corner = 0; corner < vertices.size(); ++corner) {
             if (isDone[vertices[corner]]++) continue;
             auto const place = eval::GetCornerPlace(surface, face, corner);
@@ -232,31 +232,44 @@ std::array<std::vector<double>, 2> FindLimitCurvature(Scene const& scene,
 
 }  // namespace
 
-Measurement Measure(Scene const& scene, Far::TopologyRefiner const& refiner,
-                    MeasuredSurface surface, double orientation) {
-    Surveyor const surveyor(scene, refiner, orientation);
+Measurement Measure(Model const& model, MeasuredSurface surface, Orientation orientation,
+                    Job& job) {
+    Surveyor const surveyor(model, orientation, job);
     bool const isLimit = surface == MeasuredSurface::Limit;
     return surveyor.Conclude(isLimit ? surveyor.SurveyLimit() : surveyor.SurveyMesh(), surface);
 }
 
-Scene AddVertexCurvature(Scene const& scene, Far::TopologyRefiner const& refiner,
-                         MeasuredSurface surface, double orientation) {
-    std::array<std::vector<double>, 2> k;
+VertexCurvature FindVertexCurvature(Model const& model, MeasuredSurface surface,
+                                    Orientation orientation, Job& job) {
+    VertexCurvature found;
     if (surface == MeasuredSurface::Limit) {
-        k = FindLimitCurvature(scene, refiner, orientation);
+        auto k = FindLimitCurvature(model, orientation, job);
+        found.k1 = std::move(k[0]);
+        found.k2 = std::move(k[1]);
     } else {
-        auto curvature =
-            eval::MeasureMeshCurvature(refiner.GetLevel(0), scene.positions, orientation);
-        k = {std::move(curvature.k1), std::move(curvature.k2)};
+        auto ofMesh =
+            eval::MeasureMeshCurvature(model.GetLevel(), model.GetPositions(), orientation);
+        found.k1 = std::move(ofMesh.k1);
+        found.k2 = std::move(ofMesh.k2);
     }
-    Scene result = scene;
-    for (char const* name : {"mean", "gaussian", "k1", "k2"})
-        result.primvars.push_back({name, 1, {}});
-    auto* const added = &*(result.primvars.end() - 4);
-    for (size_t v = 0; v < k[0].size(); ++v) {
-        double const values[] = {0.5 * (k[0][v] + k[1][v]), k[0][v] * k[1][v], k[0][v], k[1][v]};
-        for (size_t i = 0; i < 4; ++i) added[i].values.push_back(static_cast<float>(values[i]));
+    for (size_t v = 0; v < found.k1.size(); ++v) {
+        found.mean.push_back(0.5 * (found.k1[v] + found.k2[v]));
+        found.gaussian.push_back(found.k1[v] * found.k2[v]);
     }
+    return found;
+}
+
+Scene AddVertexCurvature(Model const& model, VertexCurvature const& curvature) {
+    Scene result = model.MakeScene();
+    auto const add = [&](char const* name, std::vector<double> const& values) {
+        auto& primvar = result.primvars.emplace_back(Primvar{name, 1, {}});
+        std::transform(values.begin(), values.end(), std::back_inserter(primvar.values),
+                       [](double x) { return static_cast<float>(x); });
+    };
+    add("mean", curvature.mean);
+    add("gaussian", curvature.gaussian);
+    add("k1", curvature.k1);
+    add("k2", curvature.k2);
     return result;
 }
 

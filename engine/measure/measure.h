@@ -4,10 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include <opensubdiv/far/topologyRefiner.h>
-
 #include "engine/bake/audit/gauss_bonnet.h"
-#include "engine/scene/scene.h"
+#include "engine/scene/job.h"
+#include "engine/scene/model.h"
 #include "eval/differential/mesh_curvature.h"
 
 namespace limn::engine {
@@ -34,14 +33,19 @@ struct Measurement {
     std::vector<GaussBonnetAudit> gaussBonnet;  ///< per component, as a bake's audit numbers them
 };
 
-/// \param orientation  +1, or -1 to turn the outside round
-/// \throws Interrupted
-Measurement Measure(Scene const& scene, Far::TopologyRefiner const& refiner,
-                    MeasuredSurface surface, double orientation);
+/// \throws Stopped
+Measurement Measure(Model const& model, MeasuredSurface surface, Orientation orientation, Job& job);
 
-/// The scene with curvature per vertex as primvars mean, gaussian, k1 and k2; 0 where there is
-/// none.
-Scene AddVertexCurvature(Scene const& scene, Far::TopologyRefiner const& refiner,
-                         MeasuredSurface surface, double orientation);
+/// Curvature at each vertex of a mesh; 0 where there is none.
+struct VertexCurvature {
+    std::vector<double> mean, gaussian, k1, k2;
+};
+
+/// \throws Stopped
+VertexCurvature FindVertexCurvature(Model const& model, MeasuredSurface surface,
+                                    Orientation orientation, Job& job);
+
+/// The mesh with curvature as primvars mean, gaussian, k1 and k2.
+Scene AddVertexCurvature(Model const& model, VertexCurvature const& curvature);
 
 }  // namespace limn::engine

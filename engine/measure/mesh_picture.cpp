@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "engine/bake/preview.h"
-#include "engine/images/png.h"
 #include "eval/differential/dirmag.h"
 #include "far_ext/error.h"
 #include "far_ext/rows/points.h"
@@ -51,7 +50,7 @@ public:
         }
     }
 
-    void Write(std::string const& path, bool isSigned) const {
+    Picture MakeColoured(bool isSigned) const {
         PreviewBuilder preview(isSigned ? RangeKind::Signed : RangeKind::Positive, 1, 0, _size,
                                _size);
         std::vector<uint8_t> const isFilled(static_cast<size_t>(_size), 1);
@@ -59,7 +58,7 @@ public:
             size_t const first = static_cast<size_t>(row) * static_cast<size_t>(_size);
             preview.Add(row, {&_values[first], NumPixels(), &_coverage[first], isFilled.data()});
         }
-        WritePng(path, preview.Draw());
+        return preview.Draw();
     }
 
     /// Draws an arrow round each of some vertices that are seen, no two nearer than `spacing`
@@ -89,14 +88,14 @@ public:
     }
 
     /// Values from 0 (black) to 1 as greys, without a legend: they measure nothing.
-    void WriteGrey(std::string const& path) const {
+    Picture MakeGrey() const {
         Picture picture(_size, _size);
         for (size_t pixel = 0; pixel < NumPixels(); ++pixel) {
             if (!(_coverage[pixel] > 0.0f)) continue;
             float const grey = std::clamp(_values[pixel], 0.0f, 1.0f);
             picture.SetGrey(pixel, static_cast<uint8_t>(255.0f * grey + 0.5f));
         }
-        WritePng(path, picture);
+        return picture;
     }
 
     Vector const& GetDirectionToEye() const { return _toEye; }
@@ -204,8 +203,7 @@ Vector BlendNormal(far_ext::Points normals, Vector const& weights,
 
 }  // namespace
 
-void WriteValuePicture(std::string const& path, Scene const& scene, std::string const& primvar,
-                       PictureView const& view) {
+Picture DrawValues(Scene const& scene, std::string const& primvar, PictureView const& view) {
     auto const found =
         std::find_if(scene.primvars.begin(), scene.primvars.end(),
                      [&](Primvar const& p) { return p.name == primvar && p.numChannels == 1; });
@@ -218,10 +216,10 @@ void WriteValuePicture(std::string const& path, Scene const& scene, std::string 
             value += weights[k] * static_cast<double>(found->values[corners[k]]);
         return value;
     });
-    picture.Write(path, true);
+    return picture.MakeColoured(true);
 }
 
-void WriteShadedPicture(std::string const& path, Scene const& scene, PictureView const& view) {
+Picture DrawShaded(Scene const& scene, PictureView const& view) {
     MeshPicture picture(scene, view);
     // A light above the eye's right shoulder; what it does not reach is not black.
     Vector const eye = picture.GetDirectionToEye(),
@@ -235,10 +233,10 @@ void WriteShadedPicture(std::string const& path, Scene const& scene, PictureView
         if (normal.dot(eye) < 0.0) normal = -normal;
         return 0.25 + 0.7 * std::max(0.0, normal.dot(light));
     });
-    picture.WriteGrey(path);
+    return picture.MakeGrey();
 }
 
-void WriteHighlightPicture(std::string const& path, Scene const& scene, PictureView const& view) {
+Picture DrawHighlights(Scene const& scene, PictureView const& view) {
     auto const refiner = far_ext::CreateRefiner(scene.cage);
     auto const normals = eval::FindAngleNormals(refiner->GetLevel(0), scene.positions);
     MeshPicture picture(scene, view);
@@ -253,11 +251,11 @@ void WriteHighlightPicture(std::string const& path, Scene const& scene, PictureV
         double const wave = std::cos(2.0 * std::acos(-1.0) * kStripes * height);
         return std::clamp(0.5 + 2.0 * wave, 0.0, 1.0);
     });
-    picture.Write(path, false);
+    return picture.MakeColoured(false);
 }
 
-void WriteArrowPicture(std::string const& path, Scene const& scene,
-                       std::vector<std::array<double, 3>> const& vectors, PictureView const& view) {
+Picture DrawArrows(Scene const& scene, std::vector<std::array<double, 3>> const& vectors,
+                   PictureView const& view) {
     auto const refiner = far_ext::CreateRefiner(scene.cage);
     auto const normals = eval::FindAngleNormals(refiner->GetLevel(0), scene.positions);
     MeshPicture picture(scene, view);
@@ -267,7 +265,7 @@ void WriteArrowPicture(std::string const& path, Scene const& scene,
                          BlendNormal(normals, weights, corners).dot(picture.GetDirectionToEye()));
     });
     picture.DrawArrows(vectors, view.size / 32.0);
-    picture.WriteGrey(path);
+    return picture.MakeGrey();
 }
 
 }  // namespace limn::engine

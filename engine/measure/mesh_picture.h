@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/images/picture.h"
 #include "engine/scene/scene.h"
 
 namespace limn::engine {
@@ -16,31 +17,28 @@ struct PictureView {
 };
 
 /// Draws a mesh in the colours of a signed value per vertex (a primvar of one channel), with its
-/// range below, and writes it as PNG.
+/// range below.
 ///
-/// \throws Error  BadOption: no such primvar, or a view without a direction.  Io
-void WriteValuePicture(std::string const& path, Scene const& scene, std::string const& primvar,
-                       PictureView const& view);
+/// \throws Error  BadOption: no such primvar, or a view without a direction
+Picture DrawValues(Scene const& scene, std::string const& primvar, PictureView const& view);
 
-/// Draws a mesh flat shaded, each face by its own normal, and writes it as PNG.
-///
-/// \throws Error  as above
-void WriteShadedPicture(std::string const& path, Scene const& scene, PictureView const& view);
+/// Draws a mesh flat shaded, each face by its own normal. \throws Error  as above
+Picture DrawShaded(Scene const& scene, PictureView const& view);
 
-/// Draws highlight lines, the reflections of parallel strip lights, and writes them as PNG: where
-/// they kink, normals do; where they turn sharply, curvature jumps.
+/// Draws highlight lines, the reflections of parallel strip lights: where they kink, normals do;
+/// where they turn sharply, curvature jumps.
 ///
 /// \throws Error  as above
 /// Source  [Zhu11] Sec. 4.3 and Fig. 13
-void WriteHighlightPicture(std::string const& path, Scene const& scene, PictureView const& view);
+Picture DrawHighlights(Scene const& scene, PictureView const& view);
 
 /// Draws a mesh, brighter where it faces the eye, with arrows of one length on it, spread evenly
-/// over the picture, along tangent vectors, and writes it as PNG. No arrow stands where the vector
-/// is below 1e-6 of the longest.
+/// over the picture, along tangent vectors. No arrow stands where the vector is below 1e-6 of the
+/// longest.
 ///
 /// \param vectors  per vertex
 /// \throws Error   as above
-void WriteArrowPicture(std::string const& path, Scene const& scene,
-                       std::vector<std::array<double, 3>> const& vectors, PictureView const& view);
+Picture DrawArrows(Scene const& scene, std::vector<std::array<double, 3>> const& vectors,
+                   PictureView const& view);
 
 }  // namespace limn::engine

@@ -9,7 +9,6 @@
 #include <tbb/parallel_for.h>
 
 #include "engine/noise/gradient_noise.h"
-#include "engine/scene/job.h"
 #include "eval/differential/refine_values.h"
 #include "eval/fit/interpolate.h"
 #include "eval/surface/surface_sample.h"
@@ -35,10 +34,10 @@ double FindFrequency(Far::TopologyLevel const& level, std::span<double const> po
 
 /// One octave at the limit points of a level's vertices.
 std::vector<double> MakeOctave(std::span<double const> limitPoints, int octave, double frequency,
-                               double amplitude, uint64_t seed) {
+                               double amplitude, uint64_t seed, Job& job) {
     std::vector<double> values(limitPoints.size() / 3);
     tbb::parallel_for(tbb::blocked_range<size_t>(0, values.size(), 4096), [&](auto const& range) {
-        CheckInterrupted();
+        job.CheckStopped();
         for (size_t i = range.begin(); i != range.end(); ++i) {
             double const* const x = &limitPoints[3 * i];
             uint64_t const own =
@@ -50,41 +49,52 @@ std::vector<double> MakeOctave(std::span<double const> limitPoints, int octave, 
     return values;
 }
 
+void CheckOptions(NoiseOptions const& options) {
+    if (options.octaves < 1 || options.octaves > 10)
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("`octaves`: {} is not from 1 to 10", options.octaves));
+    double const frequency = options.frequency.value_or(1.0);
+    if (!(frequency > 0.0 && std::isfinite(frequency)))
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("`frequency`: {} is no number above 0", frequency));
+}
+
 }  // namespace
 
-SurfaceNoise::SurfaceNoise(Scene const& scene, NoiseOptions const& options) {
+SurfaceNoise::SurfaceNoise(Model const& model, NoiseOptions const& options, Job& job) {
+    auto const& cage = model.GetCage();
+    CheckOptions(options);
     int const levels = options.octaves - 1;
-    double const corners =
-        static_cast<double>(scene.cage.faceVertices.size()) * std::pow(4.0, levels);
+    double const corners = static_cast<double>(cage.faceVertices.size()) * std::pow(4.0, levels);
     if (corners > 2e9) {
         throw Error(
             ErrorCode::TooLarge,
             fmt::format("{}: {} octaves of noise would make {:.1e} face corners on the finest "
                         "level; at most 2e9 can be indexed, take fewer octaves",
-                        scene.path, options.octaves, corners));
+                        model.GetPath(), options.octaves, corners));
     }
-    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    auto const refiner = far_ext::CreateRefiner(cage);
     if (levels > 0) {
         Far::TopologyRefiner::UniformOptions uniform(levels);
         uniform.fullTopologyInLastLevel = true;
         refiner->RefineUniform(uniform);
     }
-    std::vector<double> positions = scene.positions;
-    double frequency = options.frequency > 0.0 ? options.frequency
-                                               : FindFrequency(refiner->GetLevel(0), positions);
+    std::vector<double> positions = model.GetPositions();
+    double frequency =
+        options.frequency ? *options.frequency : FindFrequency(model.GetLevel(), positions);
     double amplitude = 1.0;
     for (int level = 0; level <= levels; ++level, frequency *= 2.0, amplitude *= options.gain) {
-        CheckInterrupted();
+        job.CheckStopped();
         if (level > 0) {
             positions = eval::RefineValues<3>(*refiner, level, positions);
             _values = eval::RefineValues<1>(*refiner, level, _values);
         }
         eval::Interpolator const interpolator(*refiner, level);
         std::vector<double> const octave = MakeOctave(interpolator.FindLimits(positions, 3), level,
-                                                      frequency, amplitude, options.seed);
+                                                      frequency, amplitude, options.seed, job);
         std::vector<double> control(octave.size());
-        interpolator.Solve(octave, 1, control, {.tolerance = 1e-9, .onIteration = [](int, double) {
-                                                    CheckInterrupted();
+        interpolator.Solve(octave, 1, control, {.tolerance = 1e-9, .onIteration = [&](int, double) {
+                                                    job.CheckStopped();
                                                 }});
         _values.resize(control.size(), 0.0);
         for (size_t i = 0; i < control.size(); ++i) _values[i] += control[i];
@@ -94,10 +104,9 @@ SurfaceNoise::SurfaceNoise(Scene const& scene, NoiseOptions const& options) {
         _low = *low;
         _high = *high;
     }
-    _cage = levels > 0 ? far_ext::MakeRefinedCage(*refiner, scene.cage) : scene.cage;
+    _cage = levels > 0 ? far_ext::MakeRefinedCage(*refiner, cage) : cage;
     _cage.fvarChannels.clear();
-    auto const base = far_ext::CreateRefiner(scene.cage);
-    _faces = std::make_unique<eval::RefinedFaces>(eval::LimitSurface(*base), levels);
+    _faces = std::make_unique<eval::RefinedFaces>(eval::LimitSurface(model.GetRefiner()), levels);
     _refiner = far_ext::CreateRefiner(_cage);
     _surface = std::make_unique<eval::LimitSurface>(*_refiner);
 }

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "engine/scene/scene.h"
+#include "engine/scene/job.h"
+#include "engine/scene/model.h"
 #include "eval/surface/face_tree.h"
 #include "eval/surface/refined_faces.h"
 
@@ -13,8 +15,8 @@ namespace limn::engine {
 
 struct NoiseOptions {
     int octaves = 4;  ///< 1 to 10: one refinement level each
-    double frequency =
-        0.0;  ///< of the first octave, cells per unit length; 0: half a cell per mean edge
+    /// Of the first octave, cells per unit length; none: half a cell per mean edge.
+    std::optional<double> frequency{};
     double gain = 0.5;  ///< amplitude from octave to octave
     uint64_t seed = 0;
 };
@@ -31,7 +33,8 @@ struct NoiseOptions {
 class SurfaceNoise {
 public:
     /// \throws Error  BadOption; TooLarge where the finest level would pass 2^31 indices
-    SurfaceNoise(Scene const& scene, NoiseOptions const& options);
+    /// \throws Stopped
+    SurfaceNoise(Model const& model, NoiseOptions const& options, Job& job);
 
     /// Least and largest value over the limits of all vertices of the finest level.
     double GetLow() const { return _low; }
@@ -42,7 +45,7 @@ public:
     public:
         explicit Sampler(SurfaceNoise const& noise);
 
-        /// \param face    of the scene, with a limit; \param domain as in eval::LimitSurface
+        /// \param face    of the model, with a limit; \param domain as in eval::LimitSurface
         /// \param values  one per place
         void Evaluate(Index face, int domain, std::span<double const> s, std::span<double const> t,
                       std::span<double> values);

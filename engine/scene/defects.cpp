@@ -22,7 +22,7 @@ bool IsWalkedTwice(Level const& level, Index edge) {
 
 class DefectFinder {
 public:
-    DefectFinder(Scene const& scene, Level const& level) : _scene(scene), _level(level) {}
+    explicit DefectFinder(Model const& model) : _model(model), _level(model.GetLevel()) {}
 
     std::vector<Defect> Find() {
         FindEdgeDefects();
@@ -34,7 +34,8 @@ public:
 
 private:
     uint32_t LineOf(Index face) const {
-        return static_cast<size_t>(face) < _scene.faceLines.size() ? _scene.faceLines[face] : 0;
+        auto const& lines = _model.GetFaceLines();
+        return static_cast<size_t>(face) < lines.size() ? lines[face] : 0;
     }
     static std::string Count(size_t count, char const* one, char const* many) {
         return count == 1 ? fmt::format("1 {}", one) : fmt::format("{} {}", count, many);
@@ -65,7 +66,7 @@ private:
                 "{} with more than 2 faces, first {} with {} ({} among them); OpenSubdiv makes "
                 "them sharp",
                 Count(crowded.count, "edge", "edges"), NameEdge(crowded.element), faces.size(),
-                _scene.NameFace(faces[0]));
+                _model.NameFace(faces[0]));
             _defects.push_back(crowded);
         }
         if (wound.count) {
@@ -76,7 +77,7 @@ private:
                 "OpenSubdiv "
                 "makes them sharp{}",
                 Count(wound.count, "edge", "edges"), NameEdge(wound.element),
-                _scene.NameFace(faces[0]), _scene.NameFace(faces[1]),
+                _model.NameFace(faces[0]), _model.NameFace(faces[1]),
                 isOrientable ? "; turn the faces of one side round"
                              : "; no turning helps, the surface cannot be oriented");
             if (!isOrientable) wound.kind = "not_orientable";
@@ -99,7 +100,7 @@ private:
         repeated.line = LineOf(repeated.element);
         repeated.message = fmt::format("{} the same vertex more than once, first {}",
                                        Count(repeated.count, "face uses", "faces use"),
-                                       _scene.NameFace(repeated.element));
+                                       _model.NameFace(repeated.element));
         _defects.push_back(repeated);
     }
 
@@ -133,7 +134,7 @@ private:
 
     void FindTagDefects() {
         Defect loose{"crease_without_edge", -1, 0, 0, {}};
-        auto const& cage = _scene.cage;
+        auto const& cage = _model.GetCage();
         for (size_t i = 0; i < cage.creaseSharpness.size(); ++i) {
             Index const a = cage.creaseVertexPairs[2 * i], b = cage.creaseVertexPairs[2 * i + 1];
             auto const edges = _level.GetVertexEdges(a);
@@ -152,15 +153,15 @@ private:
         _defects.push_back(loose);
     }
 
-    Scene const& _scene;
+    Model const& _model;
     Level const& _level;
     std::vector<Defect> _defects;
 };
 
 }  // namespace
 
-std::vector<Defect> FindDefects(Scene const& scene, Level const& level) {
-    return DefectFinder(scene, level).Find();
+std::vector<Defect> FindDefects(Model const& model) {
+    return DefectFinder(model).Find();
 }
 
 }  // namespace limn::engine

@@ -5,9 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <opensubdiv/far/topologyLevel.h>
-
-#include "engine/scene/scene.h"
+#include "engine/scene/model.h"
 
 namespace limn::engine {
 
@@ -22,8 +20,6 @@ struct Defect {
 };
 
 /// All defects, one entry per kind.
-///
-/// \param level  the base level of the scene's refiner
-std::vector<Defect> FindDefects(Scene const& scene, Far::TopologyLevel const& level);
+std::vector<Defect> FindDefects(Model const& model);
 
 }  // namespace limn::engine

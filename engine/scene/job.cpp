@@ -9,8 +9,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kPause(50);
 
-std::atomic<bool (*)()> interruptPoll{nullptr};
-
 }  // namespace
 
 void Job::Start(std::string phase, size_t total) {
@@ -55,15 +53,6 @@ void Job::Warn(std::string const& message) {
 std::vector<std::string> Job::GetWarnings() const {
     std::lock_guard const lock(_warningsMutex);
     return _warnings;
-}
-
-void SetInterruptPoll(bool (*poll)()) {
-    interruptPoll = poll;
-}
-
-void CheckInterrupted() {
-    auto const poll = interruptPoll.load(std::memory_order_relaxed);
-    if (poll && poll()) throw Stopped{};
 }
 
 }  // namespace limn::engine

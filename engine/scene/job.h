@@ -71,14 +71,4 @@ private:
     std::vector<std::string> _warnings;
 };
 
-// ---- For callers that are not given a job yet; goes when the last of them is.
-
-using Interrupted = Stopped;
-
-/// What CheckInterrupted asks, for the whole process; null for nothing.
-void SetInterruptPoll(bool (*poll)());
-
-/// \throws Stopped  once the process's poll says so
-void CheckInterrupted();
-
 }  // namespace limn::engine

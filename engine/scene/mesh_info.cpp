@@ -57,21 +57,23 @@ bool IsOrientedManifold(std::vector<Defect> const& defects) {
 
 }  // namespace
 
-MeshInfo DescribeMesh(Scene const& scene, Level const& level) {
+MeshInfo DescribeMesh(Model const& model) {
+    Level const& level = model.GetLevel();
+    auto const& cage = model.GetCage();
     MeshInfo info;
     info.vertices = level.GetNumVertices();
     info.edges = level.GetNumEdges();
     info.faces = level.GetNumFaces();
-    info.creases = scene.cage.creaseSharpness.size();
-    info.corners = scene.cage.cornerSharpness.size();
-    info.holes = scene.cage.holes.size();
-    info.groups = ListGroups(scene);
-    info.defects = FindDefects(scene, level);
+    info.creases = cage.creaseSharpness.size();
+    info.corners = cage.cornerSharpness.size();
+    info.holes = cage.holes.size();
+    info.groups = model.ListGroups();
+    info.defects = FindDefects(model);
     CountVertices(level, info);
     info.boundaryLoops = CountBoundaryLoops(level);
     if (IsOrientedManifold(info.defects))
         info.genus = (2 * info.components - info.eulerCharacteristic - info.boundaryLoops) / 2;
-    info.uv = DescribeUVs(scene);
+    info.uv = DescribeUVs(model);
     return info;
 }
 

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "engine/scene/job.h"
 #include "eval/differential/subdivide_values.h"
 #include "eval/surface/vertex_limits.h"
 #include "far_ext/error.h"
@@ -23,23 +22,23 @@ using Level = Far::TopologyLevel;
 /// Refines values of length N through all levels: of vertices, or of a face-varying channel.
 template <size_t N>
 std::vector<double> RefineToLast(Far::TopologyRefiner const& refiner, std::span<double const> base,
-                                 int fvarChannel = -1) {
+                                 Job& job, int fvarChannel = -1) {
     std::vector<double> values(base.begin(), base.end());
     for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
-        CheckInterrupted();
+        job.CheckStopped();
         values = eval::RefineValues<N>(refiner, level, values, fvarChannel);
     }
     return values;
 }
 
-Primvar RefinePrimvar(Far::TopologyRefiner const& refiner, Primvar const& primvar) {
+Primvar RefinePrimvar(Far::TopologyRefiner const& refiner, Primvar const& primvar, Job& job) {
     Primvar fine{primvar.name, primvar.numChannels, {}};
     size_t const n = static_cast<size_t>(primvar.numChannels);
     for (size_t c = 0; c < n; ++c) {
         std::vector<double> channel;
         for (size_t i = c; i < primvar.values.size(); i += n)
             channel.push_back(static_cast<double>(primvar.values[i]));
-        auto const refined = RefineToLast<1>(refiner, channel);
+        auto const refined = RefineToLast<1>(refiner, channel, job);
         fine.values.resize(refined.size() * n);
         for (size_t i = 0; i < refined.size(); ++i)
             fine.values[i * n + c] = static_cast<float>(refined[i]);
@@ -47,66 +46,70 @@ Primvar RefinePrimvar(Far::TopologyRefiner const& refiner, Primvar const& primva
     return fine;
 }
 
-/// Moves refined vertices to the limit. Vertices without a face that has one stay.
-void MoveToLimit(Scene& fine) {
+/// Refined vertices at their limit. Vertices without a face that has one stay.
+std::vector<double> MoveToLimit(Scene const& fine, Job& job) {
     auto const refiner = far_ext::CreateRefiner(fine.cage);
     eval::LimitSurface const surface(*refiner);
-    fine.positions = eval::EvaluateVertexLimits(surface, fine.positions, 3,
-                                                eval::FaceTree::kLimitDepth, CheckInterrupted)
-                         .values;
+    return eval::EvaluateVertexLimits(surface, fine.positions, 3, eval::FaceTree::kLimitDepth,
+                                      [&] { job.CheckStopped(); })
+        .values;
 }
 
 }  // namespace
 
-std::unique_ptr<Far::TopologyRefiner> MakeUniformRefiner(Scene const& scene, int levels) {
+std::unique_ptr<Far::TopologyRefiner> MakeUniformRefiner(far_ext::ControlMesh const& cage,
+                                                         std::string const& path, int levels) {
     if (levels < 0 || levels > 10) {
         throw Error(ErrorCode::BadOption, fmt::format("`levels`: {} is not from 0 to 10", levels));
     }
-    double const corners =
-        static_cast<double>(scene.cage.faceVertices.size()) * std::pow(4.0, levels);
+    double const corners = static_cast<double>(cage.faceVertices.size()) * std::pow(4.0, levels);
     if (corners > 2e9) {
         throw Error(ErrorCode::TooLarge,
                     fmt::format("{}: {} levels would make {:.1e} face corners; at most 2e9 can be "
                                 "indexed",
-                                scene.path, levels, corners));
+                                path, levels, corners));
     }
-    auto refiner = far_ext::CreateRefiner(scene.cage);
+    auto refiner = far_ext::CreateRefiner(cage);
     Far::TopologyRefiner::UniformOptions uniform(levels);
     uniform.fullTopologyInLastLevel = true;
     refiner->RefineUniform(uniform);
     return refiner;
 }
 
-void InheritGroups(Scene const& scene, std::vector<Index> const& baseFaces, Scene& fine) {
-    for (size_t kind = 0; kind < 3; ++kind) {
-        fine.groups[kind].names = scene.groups[kind].names;
-        if (scene.groups[kind].faceGroup.empty()) continue;
-        for (Index face : baseFaces)
-            fine.groups[kind].faceGroup.push_back(scene.groups[kind].faceGroup[face]);
+std::array<FaceGroups, 3> InheritGroups(std::array<FaceGroups, 3> const& groups,
+                                        std::vector<Index> const& baseFaces) {
+    std::array<FaceGroups, 3> fine;
+    for (size_t kind = 0; kind < groups.size(); ++kind) {
+        fine[kind].names = groups[kind].names;
+        if (groups[kind].faceGroup.empty()) continue;
+        for (Index face : baseFaces) fine[kind].faceGroup.push_back(groups[kind].faceGroup[face]);
     }
-}
-
-Scene RefineAllButPositions(Scene const& scene, Far::TopologyRefiner const& refiner) {
-    Scene fine;
-    fine.path = scene.path;
-    fine.name = scene.name;
-    fine.cage = far_ext::MakeRefinedCage(refiner, scene.cage);
-    if (scene.HasUVs()) fine.uvs = RefineToLast<2>(refiner, scene.uvs, 0);
-    for (Primvar const& primvar : scene.primvars)
-        fine.primvars.push_back(RefinePrimvar(refiner, primvar));
-    InheritGroups(scene, far_ext::FindBaseFaces(refiner, refiner.GetMaxLevel()), fine);
     return fine;
 }
 
-Scene RefineUniformly(Scene const& scene, int levels, bool toLimit, far_ext::SubdivisionRule rule) {
-    auto const refiner = MakeUniformRefiner(scene, levels);
-    Scene fine = RefineAllButPositions(scene, *refiner);
-    fine.positions = scene.positions;
-    for (int level = 1; level <= levels; ++level) {
-        CheckInterrupted();
-        fine.positions = eval::SubdivideValues<3>(*refiner, level, rule, fine.positions);
+Scene RefineAllButPositions(Model const& model, Far::TopologyRefiner const& refiner, Job& job) {
+    Scene fine;
+    fine.path = model.GetPath();
+    fine.name = model.GetName();
+    fine.cage = far_ext::MakeRefinedCage(refiner, model.GetCage());
+    if (model.HasUVs()) fine.uvs = RefineToLast<2>(refiner, model.GetUVs(), job, 0);
+    for (Primvar const& primvar : model.GetPrimvars())
+        fine.primvars.push_back(RefinePrimvar(refiner, primvar, job));
+    fine.groups =
+        InheritGroups(model.GetGroups(), far_ext::FindBaseFaces(refiner, refiner.GetMaxLevel()));
+    return fine;
+}
+
+Scene RefineUniformly(Model const& model, RefineOptions const& options, Job& job) {
+    auto const refiner = MakeUniformRefiner(model.GetCage(), model.GetPath(), options.levels);
+    Scene fine = RefineAllButPositions(model, *refiner, job);
+    fine.positions = model.GetPositions();
+    for (int level = 1; level <= options.levels; ++level) {
+        job.CheckStopped();
+        fine.positions = eval::SubdivideValues<3>(*refiner, level, options.rule, fine.positions);
     }
-    if (toLimit && rule == far_ext::SubdivisionRule::Scheme) MoveToLimit(fine);
+    if (options.toLimit && options.rule == far_ext::SubdivisionRule::Scheme)
+        fine.positions = MoveToLimit(fine, job);
     return fine;
 }
 

@@ -1,37 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <memory>
+#include <vector>
 
 #include <opensubdiv/far/topologyRefiner.h>
 
-#include "engine/scene/scene.h"
+#include "engine/scene/job.h"
+#include "engine/scene/model.h"
 #include "far_ext/differential/subdivision_rows.h"
 
 namespace limn::engine {
+
+struct RefineOptions {
+    int levels = 1;        ///< 0 to 10
+    bool toLimit = false;  ///< also moves the vertices (not the UVs) to their limit
+    /// Of the positions; Butterfly needs the Loop scheme, and its vertices are in the limit
+    /// already.
+    far_ext::SubdivisionRule rule = far_ext::SubdivisionRule::Scheme;
+};
 
 /// Refines a mesh uniformly by OpenSubdiv's rules, in double.
 ///
 /// The result has OpenSubdiv's vertex order, refined UVs and primvars, decayed creases and corners,
 /// holes and groups of the parents.
 ///
-/// \param levels  0 to 10
-/// \param toLimit also moves the vertices (not the UVs) to their limit
-/// \param rule    of the positions; Butterfly needs the Loop scheme, and its vertices are in the
-///                limit already
 /// \throws Error  BadOption; TooLarge where the refined mesh would pass 2^31 indices
-Scene RefineUniformly(Scene const& scene, int levels, bool toLimit,
-                      far_ext::SubdivisionRule rule = far_ext::SubdivisionRule::Scheme);
+/// \throws Stopped
+Scene RefineUniformly(Model const& model, RefineOptions const& options, Job& job);
 
-/// A scene's topology, refined uniformly, with the last level's full topology.
+/// A topology, refined uniformly, with the last level's full topology.
 ///
+/// \param path    of the mesh, for messages
 /// \throws Error  as RefineUniformly
-std::unique_ptr<Far::TopologyRefiner> MakeUniformRefiner(Scene const& scene, int levels);
-
-/// Puts faces into the groups of the base faces they lie in.
-void InheritGroups(Scene const& scene, std::vector<Index> const& baseFaces, Scene& fine);
+std::unique_ptr<Far::TopologyRefiner> MakeUniformRefiner(far_ext::ControlMesh const& cage,
+                                                         std::string const& path, int levels);
 
 /// All of RefineUniformly's result but the positions.
-Scene RefineAllButPositions(Scene const& scene, Far::TopologyRefiner const& refiner);
+Scene RefineAllButPositions(Model const& model, Far::TopologyRefiner const& refiner, Job& job);
+
+/// Groups of refined faces: those of the base faces they lie in.
+std::array<FaceGroups, 3> InheritGroups(std::array<FaceGroups, 3> const& groups,
+                                        std::vector<Index> const& baseFaces);
 
 }  // namespace limn::engine

@@ -34,6 +34,9 @@ inline constexpr auto kTriangleWords = MakeEnumWords<Sdc::Options::TriangleSubdi
     "triangles",
     {{Sdc::Options::TRI_SUB_CATMARK, "catmark"}, {Sdc::Options::TRI_SUB_SMOOTH, "smooth"}});
 
+inline constexpr auto kOrientationWords = MakeEnumWords<Orientation>(
+    "orientation", {{Orientation::Right, "right"}, {Orientation::Left, "left"}});
+
 /// "scheme=catmark boundary=edge-and-corner fvar=corners-plus1 creases=uniform triangles=catmark"
 std::string DescribeSubdivision(far_ext::ControlMesh const& cage);
 

@@ -92,11 +92,12 @@ struct FaceCorners {
     size_t first;
 };
 
-Polygon GetTexturePolygon(Scene const& scene, FaceCorners const& at) {
-    Index const* const values = scene.cage.fvarChannels[0].valueIndices.data() + at.first;
+Polygon GetTexturePolygon(Model const& model, FaceCorners const& at) {
+    Index const* const values = model.GetCage().fvarChannels[0].valueIndices.data() + at.first;
+    auto const& uvs = model.GetUVs();
     Polygon polygon;
-    for (int i = 0; i < scene.cage.faceSizes[at.face]; ++i)
-        polygon.push_back({scene.uvs[2 * values[i]], scene.uvs[2 * values[i] + 1]});
+    for (int i = 0; i < model.GetCage().faceSizes[at.face]; ++i)
+        polygon.push_back({uvs[2 * values[i]], uvs[2 * values[i] + 1]});
     return polygon;
 }
 
@@ -148,26 +149,26 @@ void AddToTiles(FaceCorners const& at, Box const& box, FacesOfTile& facesOfTile)
     }
 }
 
-size_t CountOverlaps(Scene const& scene, FacesOfTile const& facesOfTile) {
-    OverlapFinder overlaps(scene.cage.faceSizes.size());
+size_t CountOverlaps(Model const& model, FacesOfTile const& facesOfTile) {
+    OverlapFinder overlaps(model.GetCage().faceSizes.size());
     for (auto const& [tile, faces] : facesOfTile) {
         overlaps.StartTile(ToUdimTile(tile));
-        for (FaceCorners const& at : faces) overlaps.Add(at.face, GetTexturePolygon(scene, at));
+        for (FaceCorners const& at : faces) overlaps.Add(at.face, GetTexturePolygon(model, at));
     }
     return overlaps.GetCount();
 }
 
 }  // namespace
 
-UVInfo DescribeUVs(Scene const& scene) {
+UVInfo DescribeUVs(Model const& model) {
     UVInfo info;
-    info.present = scene.HasUVs();
+    info.present = model.HasUVs();
     if (!info.present) return info;
     std::set<int> tiles;
     FacesOfTile facesOfTile;
     FaceCorners at{0, 0};
-    for (; at.face < scene.cage.GetNumFaces(); ++at.face) {
-        auto const polygon = GetTexturePolygon(scene, at);
+    for (; at.face < model.GetCage().GetNumFaces(); ++at.face) {
+        auto const polygon = GetTexturePolygon(model, at);
         auto const box = FindBox(polygon);
         double const area = GetSignedArea(polygon);
         bool const isFlat = std::abs(area) <= 1e-12;
@@ -178,10 +179,10 @@ UVInfo DescribeUVs(Scene const& scene) {
             tiles.insert(box.GetTile().GetNumber());
             if (!isFlat) AddToTiles(at, box, facesOfTile);
         }
-        at.first += static_cast<size_t>(scene.cage.faceSizes[at.face]);
+        at.first += static_cast<size_t>(model.GetCage().faceSizes[at.face]);
     }
     info.tiles.assign(tiles.begin(), tiles.end());
-    info.overlapFaces = CountOverlaps(scene, facesOfTile);
+    info.overlapFaces = CountOverlaps(model, facesOfTile);
     return info;
 }
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/scene/scene.h"
+#include "engine/scene/model.h"
 
 namespace limn::engine {
 
@@ -16,6 +16,6 @@ struct UVInfo {
 
 /// Looks at the polygons that faces are in texture space. Those that overlap are found on a grid of
 /// 512 x 512 samples per tile.
-UVInfo DescribeUVs(Scene const& scene);
+UVInfo DescribeUVs(Model const& model);
 
 }  // namespace limn::engine

@@ -32,10 +32,10 @@ std::vector<double> Times(double factor, std::vector<double> values) {
 
 /// A length of the scene's size, so that the fourth powers of all others fit a float; a power of
 /// two, which costs no digit.
-double FindUnit(Scene const& scene) {
+double FindUnit(std::vector<double> const& positions) {
     double size = 0.0;
-    for (size_t i = 3; i < scene.positions.size(); ++i)
-        size = std::max(size, std::abs(scene.positions[i] - scene.positions[i % 3]));
+    for (size_t i = 3; i < positions.size(); ++i)
+        size = std::max(size, std::abs(positions[i] - positions[i % 3]));
     return size > 0.0 && std::isfinite(size) ? std::exp2(std::ilogb(size)) : 1.0;
 }
 
@@ -60,12 +60,9 @@ std::vector<double> Interpolate(CascadeMesh const& mesh, std::vector<double> con
     return fine;
 }
 
-/// Widths at the control mesh' vertices: 0 where they are given anew on every level, none where
-/// they are constant.
-std::vector<double> GetStartWidths(Scene const& scene, FilterWidths const& widths) {
-    if (widths.IsConstant()) return {};
-    return widths.GetAtVertices().empty() ? std::vector<double>(scene.positions.size() / 3, 0.0)
-                                          : widths.GetAtVertices();
+/// How far the closed component that shrank most did; 1 where none did.
+double GetRadiusRatio(SmoothReport const& report) {
+    return report.shrinkage ? report.shrinkage->radiusRatio : 1.0;
 }
 
 /// Runs one cascade.
@@ -73,37 +70,58 @@ template <class Scalar>
 class SmoothRun {
 public:
     /// \param isAgain  the input's warnings have been given
-    SmoothRun(Scene const& scene, Far::TopologyLevel const& base, FilterWidths const& widths,
-              SmoothOptions const& options, bool isAgain, Job& job)
-        : _scene(scene),
-          _base(base),
+    SmoothRun(Model const& model, ScaledWidths const& widths, SmoothOptions const& options,
+              bool isAgain, Job& job)
+        : _model(model),
           _widths(widths),
           _options(options),
           _isAgain(isAgain),
           _job(job),
-          _components(base),
+          _components(model.GetLevel()),
           _ofVertex(_components.ofVertex),
-          _start(scene.positions),
-          _levels(scene, options.levels, options.refinement, options.keepsCreases),
-          _unit(FindUnit(scene)),
-          _cascade(Times(1.0 / _unit, scene.positions),
-                   Times(1.0 / _unit, GetStartWidths(scene, widths)), MakeCascadeOptions()) {}
+          _start(model.GetPositions()),
+          _levels(model, options.levels, options.refinement, options.keepsCreases),
+          _unit(FindUnit(model.GetPositions())),
+          _cascade(Times(1.0 / _unit, model.GetPositions()),
+                   Times(1.0 / _unit, widths.GetStart(model)), MakeCascadeOptions()) {}
 
-    /// \return the last level, or nothing where a component collapsed
-    Scene Run(SmoothReport& report) {
+    /// \return without a mesh where a component collapsed
+    SmoothResult Run() {
+        _report.meanEdge = far_ext::FindMeanEdgeLength(_model.GetLevel(), _model.GetPositions());
+        _report.largestWidth = _widths.GetLargest();
         size_t total = 0;
         for (int level = 1; level <= _options.levels; ++level) total += GetEffort(level);
         _job.Start("smooth", total);
-        for (_level = 1; _level <= _options.levels; ++_level) {
-            Step(report);
+        bool isDone = true;
+        for (_level = 1; isDone && _level <= _options.levels; ++_level) {
+            Step();
             AdvanceTo(1.0);
             _shown = 0;
-            report.hasCollapsed |= report.shrinkage.radiusRatio < eval::kLeastRadiusRatio;
-            if (report.hasCollapsed && !_options.keepsResult) break;
+            _report.hasCollapsed |= GetRadiusRatio(_report) < eval::kLeastRadiusRatio;
+            isDone = !_report.hasCollapsed || _options.onCollapse == OnCollapse::KeepResult;
         }
         _job.Finish();
-        if (report.hasCollapsed && !_options.keepsResult) return {};
-        Scene fine = _levels.MakeScene();
+        return {isDone ? std::optional(MakeScene()) : std::nullopt, std::move(_report)};
+    }
+
+private:
+    eval::CascadeOptions MakeCascadeOptions() {
+        auto const constant = _widths.GetConstant();
+        auto const* const stop = std::get_if<StopAtResidual>(&_options.stop);
+        return {.solver = _options.solver,
+                .tolerance = stop ? stop->residual : 0.0,
+                .width = constant ? *constant / _unit : -1.0,
+                .isGraph = IsGraph(),
+                .progress = [this](double share) {
+                    _job.CheckStopped();
+                    AdvanceTo(share);
+                }};
+    }
+
+    bool IsGraph() const { return _options.constraint == SmoothConstraint::Graph; }
+
+    Scene MakeScene() {
+        Scene fine = _levels.MakeScene(_job);
         fine.positions = Times(_unit, _cascade.GetPositions());
         auto const widths = Times(_unit, _cascade.GetWidths());
         std::erase_if(fine.primvars,
@@ -112,26 +130,12 @@ public:
         return fine;
     }
 
-private:
-    eval::CascadeOptions MakeCascadeOptions() {
-        return {.solver = _options.solver,
-                .tolerance = IsByTolerance() ? _options.tolerance : 0.0,
-                .width = _widths.IsConstant() ? _widths.GetConstant() / _unit : -1.0,
-                .isGraph = _options.isGraph,
-                .progress = [this](double share) {
-                    CheckInterrupted();
-                    AdvanceTo(share);
-                }};
-    }
-
-    bool IsByTolerance() const { return _options.sweeps == 0 && _options.iterations == 0; }
-
     /// What a level costs: a number of unknowns, and of iterations, which about doubles with each
     /// quartering.
     size_t GetEffort(int level) const {
-        int const doublings = IsByTolerance() && _options.solver != eval::CascadeSolver::Exact
-                                  ? 3 * level
-                                  : 2 * level;
+        bool const isByResidual = std::holds_alternative<StopAtResidual>(_options.stop) &&
+                                  _options.solver != eval::CascadeSolver::Exact;
+        int const doublings = isByResidual ? 3 * level : 2 * level;
         return size_t{1000} << (_options.refinement == SmoothRefinement::Quadrisect
                                     ? doublings
                                     : doublings / 2);
@@ -146,45 +150,49 @@ private:
     }
 
     int CountIterations() const {
-        if (_options.iterations > 0) return _options.iterations;
-        if (_options.sweeps == 0) return kMaxIterations;
-        return eval::CountSweeps(_options.solver, _options.sweeps, _options.levels - _level,
-                                 _options.refinement == SmoothRefinement::Bisect);
+        if (auto const* const each = std::get_if<IterationsPerLevel>(&_options.stop))
+            return each->count;
+        if (auto const* const sweeps = std::get_if<SweepsOnFinest>(&_options.stop)) {
+            return eval::CountSweeps(_options.solver, sweeps->count, _options.levels - _level,
+                                     _options.refinement == SmoothRefinement::Bisect);
+        }
+        return kMaxIterations;
     }
 
-    void Step(SmoothReport& report) {
-        CheckInterrupted();
+    void Step() {
+        _job.CheckStopped();
         CascadeMesh const& mesh = _levels.MakeNext();
         std::vector<Index> const coarse = std::move(_rows.vertices);
         _rows = far_ext::BuildCascadeLevel(mesh, coarse, _options.boundary);
         _ofVertex = Inherit(mesh, _ofVertex);
         _start = Interpolate(mesh, _start);
         auto const given = _widths.SampleLevel(_levels, _start);
-        if (_level == 1 && !_options.isGraph && !_isAgain)
-            WarnOfSharpCorners(_scene, _base, _rows,
-                               given.empty() ? _widths.GetAtVertices() : given, _job);
-        CheckInterrupted();
-        bool const wasFrozen = !report.levels.empty() && report.levels.back().isMetricFrozen;
-        report.levels.push_back(_cascade.Step(_rows, CountIterations(), Times(1.0 / _unit, given)));
-        auto const& step = report.levels.back();
+        if (_level == 1 && !IsGraph() && !_isAgain)
+            WarnOfSharpCorners(_model, _rows, given.empty() ? _widths.GetStart(_model) : given,
+                               _job);
+        _job.CheckStopped();
+        bool const wasFrozen = !_report.levels.empty() && _report.levels.back().isMetricFrozen;
+        _report.levels.push_back(
+            _cascade.Step(_rows, CountIterations(), Times(1.0 / _unit, given)));
+        auto const& step = _report.levels.back();
         if (step.isMetricFrozen && !wasFrozen) {
             _job.Warn(
                 fmt::format("{}: from level {} on the filter keeps the metric of the level before: "
                             "its smallest angle would be {:.2g} degrees, its "
                             "smallest area {:.2g} of the mean. A smaller width, or less sharp "
                             "corners, avoid it",
-                            _scene.path, _level, step.minAngleRadians * 180.0 / std::numbers::pi,
-                            step.areaRatio));
+                            _model.GetPath(), _level,
+                            step.minAngleRadians * 180.0 / std::numbers::pi, step.areaRatio));
         }
-        if (_options.preservesVolume)
-            RestoreVolumes(mesh, report);
-        else if (!_options.isGraph)
-            WatchRadii(report);
+        if (_options.constraint == SmoothConstraint::Volume)
+            RestoreVolumes(mesh);
+        else if (!IsGraph())
+            WatchRadii();
     }
 
     /// Adds to the equation a force along the normals that keeps the volume: (M + L) X = M (X0 + c
     /// sigma^2 / 2 n), with c per component. As that is linear in c, it takes one more solve.
-    void RestoreVolumes(CascadeMesh const& mesh, SmoothReport& report) {
+    void RestoreVolumes(CascadeMesh const& mesh) {
         auto positions = Times(_unit, _cascade.GetPositions());
         auto const widths = _cascade.GetWidths();
         std::vector<double> force = eval::FindVolumeNormals(mesh, positions);
@@ -200,29 +208,28 @@ private:
                                                 directions, positions);
         _cascade.SetPositions(Times(1.0 / _unit, positions));
         auto const reached = eval::MeasureVolumes(mesh, _ofVertex, _components.count, positions);
-        report.volumes.clear();
+        _report.volumes.clear();
         for (size_t component = 0; component < isMet.size(); ++component) {
             if (!_components.isClosed[component]) continue;
-            report.volumes.push_back({_components.firstVertex[component], wanted[component],
-                                      reached[component], isMet[component] != 0});
+            _report.volumes.push_back({_components.firstVertex[component], wanted[component],
+                                       reached[component], isMet[component] != 0});
         }
     }
 
-    void WatchRadii(SmoothReport& report) {
+    void WatchRadii() {
         auto const start = eval::FindMeanRadii(_start, _ofVertex, _components.count);
         auto const present =
             eval::FindMeanRadii(_cascade.GetPositions(), _ofVertex, _components.count);
         for (size_t component = 0; component < start.size(); ++component) {
             if (!_components.isClosed[component] || !(start[component] > 0.0)) continue;
             double const ratio = _unit * present[component] / start[component];
-            if (ratio < report.shrinkage.radiusRatio)
-                report.shrinkage = {_components.firstVertex[component], _level, ratio};
+            if (ratio < GetRadiusRatio(_report))
+                _report.shrinkage = {_components.firstVertex[component], _level, ratio};
         }
     }
 
-    Scene const& _scene;
-    Far::TopologyLevel const& _base;
-    FilterWidths const& _widths;
+    Model const& _model;
+    ScaledWidths const& _widths;
     SmoothOptions const& _options;
     bool _isAgain;
     Job& _job;
@@ -235,29 +242,31 @@ private:
     eval::Cascade<Scalar> _cascade;
     int _level = 0;
     size_t _shown = 0;  // of the level's effort
+    SmoothReport _report;
 };
 
 constexpr double kMaxVertices = 10000.0;  // of a grid to measure the critical width on
 
 /// Measures what factor on the widths the closed components carry.
-double MeasureCriticalFactor(Scene const& scene, Far::TopologyLevel const& base,
-                             FilterWidths const& widths, SmoothOptions const& options) {
+double MeasureCriticalFactor(Model const& model, ScaledWidths const& widths,
+                             SmoothOptions const& options, Job& job) {
     bool const isBisection = options.refinement == SmoothRefinement::Bisect;
     int maxLevels = isBisection ? 6 : 3;
     while (maxLevels > 1 &&
-           base.GetNumVertices() * std::pow(isBisection ? 2.0 : 4.0, maxLevels) > kMaxVertices)
+           model.GetLevel().GetNumVertices() * std::pow(isBisection ? 2.0 : 4.0, maxLevels) >
+               kMaxVertices)
         --maxLevels;
-    SmoothLevels levels(scene, maxLevels, options.refinement, options.keepsCreases);
-    SmoothComponents const components(base);
+    SmoothLevels levels(model, maxLevels, options.refinement, options.keepsCreases);
+    SmoothComponents const components(model.GetLevel());
     std::vector<int> ofVertex = components.ofVertex;
-    std::vector<double> start = scene.positions;
+    std::vector<double> start = model.GetPositions();
     std::vector<CascadeLevel> rows;
-    double const unit = FindUnit(scene);
+    double const unit = FindUnit(start);
     eval::CascadeWidths scaled;
-    if (widths.IsConstant())
-        scaled.constant = widths.GetConstant() / unit;
+    if (auto const constant = widths.GetConstant())
+        scaled.constant = *constant / unit;
     else
-        scaled.atVertices = Times(1.0 / unit, GetStartWidths(scene, widths));
+        scaled.atVertices = Times(1.0 / unit, widths.GetStart(model));
     for (int level = 1; level <= maxLevels; ++level) {
         CascadeMesh const& mesh = levels.MakeNext();
         rows.push_back(far_ext::BuildCascadeLevel(
@@ -267,18 +276,67 @@ double MeasureCriticalFactor(Scene const& scene, Far::TopologyLevel const& base,
         auto given = widths.SampleLevel(levels, start);
         if (!given.empty()) scaled.atLevels.push_back(Times(1.0 / unit, std::move(given)));
     }
-    return eval::FindCriticalFactor(rows, Times(1.0 / unit, scene.positions), scaled, ofVertex,
-                                    components.isClosed, CheckInterrupted);
+    return eval::FindCriticalFactor(rows, Times(1.0 / unit, model.GetPositions()), scaled, ofVertex,
+                                    components.isClosed, [&] { job.CheckStopped(); });
 }
 
-Scene RunOnce(Scene const& scene, Far::TopologyLevel const& base, FilterWidths const& widths,
-              SmoothOptions const& options, bool isAgain, Job& job, SmoothReport& report) {
-    report = {};
-    report.meanEdge = far_ext::FindMeanEdgeLength(base, scene.positions);
-    report.largestWidth = widths.GetLargest();
-    bool const isSingle = options.isSingle && options.solver == eval::CascadeSolver::Jacobi;
-    return isSingle ? SmoothRun<float>(scene, base, widths, options, isAgain, job).Run(report)
-                    : SmoothRun<double>(scene, base, widths, options, isAgain, job).Run(report);
+SmoothResult RunOnce(Model const& model, ScaledWidths const& widths, SmoothOptions const& options,
+                     bool isAgain, Job& job) {
+    bool const isSingle =
+        options.precision == Precision::Float && options.solver == eval::CascadeSolver::Jacobi;
+    return isSingle ? SmoothRun<float>(model, widths, options, isAgain, job).Run()
+                    : SmoothRun<double>(model, widths, options, isAgain, job).Run();
+}
+
+void CheckInput(Model const& model, FilterWidths const& widths, SmoothOptions const& options,
+                Job& job) {
+    if (options.solver == eval::CascadeSolver::Jacobi &&
+        std::holds_alternative<StopAtResidual>(options.stop)) {
+        throw Error(ErrorCode::BadOption,
+                    "Jacobi sweeps do not watch the residual; `stop` needs their number");
+    }
+    RefuseDefects(model, job);
+    CheckWidths(widths, model);
+    double const unit = FindUnit(model.GetPositions()),
+                 largest = ScaledWidths(widths, 1.0).GetLargest();
+    if (largest > kLargestWidth * unit) {
+        throw Error(ErrorCode::BadMesh,
+                    fmt::format("{}: a filter width of {:.4g} is more than {:.0e} times the mesh's "
+                                "size of about {:.4g}; give less",
+                                model.GetPath(), largest, kLargestWidth, unit));
+    }
+    if (options.constraint == SmoothConstraint::Graph) RequireGraph(model);
+}
+
+/// Where a component shrank suspiciously, measures what it carries, and limits the width to that
+/// where asked for.
+SmoothResult WatchCollapse(Model const& model, FilterWidths const& widths,
+                           SmoothOptions const& options, Job& job, SmoothResult result) {
+    // A sphere is at 0.72 of its radius where the width is 0.9 of the critical one. On a large mesh
+    // it costs too much to be sure.
+    constexpr double kSuspiciousRatio = 0.75;
+    double const suspicious = 4.0 * model.GetLevel().GetNumVertices() <= kMaxVertices
+                                  ? kSuspiciousRatio
+                                  : eval::kLeastRadiusRatio;
+    if (GetRadiusRatio(result.report) >= suspicious) return result;
+    double const factor = MeasureCriticalFactor(model, ScaledWidths(widths, 1.0), options, job);
+    result.report.hasCollapsed |= factor < 1.0;
+    if (result.report.hasCollapsed && options.onCollapse == OnCollapse::LimitWidth &&
+        factor > 0.0) {
+        Index const vertex = result.report.shrinkage->firstVertex;
+        double const limit =
+            0.95 * factor;  // a fixed point near the critical width takes many levels
+        result = RunOnce(model, ScaledWidths(widths, limit), options, true, job);
+        result.report.limitedBy = limit;
+        job.Warn(
+            fmt::format("{}: the width was reduced to {:.4g} of what was asked for; the "
+                        "component of vertex {} carries {:.4g}",
+                        model.GetPath(), limit, vertex, factor));
+    }
+    result.report.criticalFactor = factor;
+    if (result.report.hasCollapsed && options.onCollapse != OnCollapse::KeepResult)
+        result.mesh.reset();
+    return result;
 }
 
 }  // namespace
@@ -288,48 +346,19 @@ bool SmoothReport::HasConverged() const {
                                         [](auto const& level) { return level.converged; });
 }
 
-Scene Smooth(Scene const& scene, Far::TopologyRefiner const& refiner, FilterWidths const& widths,
-             SmoothOptions const& options, Job& job, SmoothReport& report) {
-    auto const base = refiner.GetLevel(0);
-    RefuseDefects(scene, base, job);
-    if (double const unit = FindUnit(scene); widths.GetLargest() > kLargestWidth * unit) {
-        throw Error(ErrorCode::BadMesh,
-                    fmt::format("{}: a filter width of {:.4g} is more than {:.0e} times the mesh's "
-                                "size of about {:.4g}; give less",
-                                scene.path, widths.GetLargest(), kLargestWidth, unit));
+SmoothResult Smooth(Model const& model, FilterWidths const& widths, SmoothOptions const& options,
+                    Job& job) {
+    CheckInput(model, widths, options, job);
+    SmoothResult result =
+        WatchCollapse(model, widths, options, job,
+                      RunOnce(model, ScaledWidths(widths, 1.0), options, false, job));
+    for (SmoothVolume const& volume : result.report.volumes) {
+        if (volume.isMet) continue;
+        job.Warn(fmt::format(
+            "{}: the component of vertex {} could not keep its volume: {:.6g} of {:.6g}",
+            model.GetPath(), volume.firstVertex, volume.end, volume.start));
     }
-    if (options.isGraph) RequireGraph(scene, base);
-    Scene fine = RunOnce(scene, base, widths, options, false, job, report);
-    // A sphere is at 0.72 of its radius where the width is 0.9 of the critical one. On a large mesh
-    // it costs too much to be sure.
-    constexpr double kSuspiciousRatio = 0.75;
-    double const suspicious =
-        4.0 * base.GetNumVertices() <= kMaxVertices ? kSuspiciousRatio : eval::kLeastRadiusRatio;
-    if (report.shrinkage.radiusRatio < suspicious) {
-        double const factor = MeasureCriticalFactor(scene, base, widths, options);
-        report.hasCollapsed |= factor < 1.0;
-        if (report.hasCollapsed && options.limitsWidth && factor > 0.0) {
-            Index const vertex = report.shrinkage.firstVertex;
-            double const limit =
-                0.95 * factor;  // a fixed point near the critical width takes many levels
-            fine = RunOnce(scene, base, widths.Scaled(limit), options, true, job, report);
-            report.limitedBy = limit;
-            job.Warn(
-                fmt::format("{}: the width was reduced to {:.4g} of what was asked for; the "
-                            "component of vertex {} carries {:.4g}",
-                            scene.path, limit, vertex, factor));
-        }
-        report.criticalFactor = factor;
-        if (report.hasCollapsed && !options.keepsResult) fine = {};
-    }
-    for (SmoothVolume const& volume : report.volumes) {
-        if (!volume.isMet) {
-            job.Warn(fmt::format(
-                "{}: the component of vertex {} could not keep its volume: {:.6g} of {:.6g}",
-                scene.path, volume.firstVertex, volume.end, volume.start));
-        }
-    }
-    return fine;
+    return result;
 }
 
 }  // namespace limn::engine

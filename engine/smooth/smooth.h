@@ -2,39 +2,63 @@
 #pragma once
 
 #include <optional>
+#include <variant>
 #include <vector>
 
-#include <opensubdiv/far/topologyRefiner.h>
-
 #include "engine/scene/job.h"
-#include "engine/scene/scene.h"
-#include "engine/smooth/filter_widths.h"
+#include "engine/scene/model.h"
 #include "engine/smooth/smooth_levels.h"
+#include "engine/smooth/widths.h"
 #include "eval/cascade/cascade.h"
 
 namespace limn::engine {
+
+/// Where conjugate gradients stop on every level.
+struct StopAtResidual {
+    double residual = 1e-6;
+};
+
+/// Sweeps or iterations on the finest level; coarser ones take more, by eval::CountSweeps.
+struct SweepsOnFinest {
+    int count = 1;
+};
+
+/// The same number of sweeps or iterations on every level.
+struct IterationsPerLevel {
+    int count = 1;
+};
+
+using SmoothStop = std::variant<StopAtResidual, SweepsOnFinest, IterationsPerLevel>;
+
+/// What the surface has to keep.
+enum class SmoothConstraint {
+    None,
+    Graph,  ///< heights z over the plane of x and y are filtered, x and y stay
+    Volume  ///< closed components keep their volume
+};
+
+/// What to do where a closed component shrinks below half, or carries less than the width.
+enum class OnCollapse {
+    Stop,
+    LimitWidth,  ///< takes 0.95 of the critical width
+    KeepResult   ///< goes on to the last level
+};
 
 struct SmoothOptions {
     int levels = 2;
     SmoothRefinement refinement = SmoothRefinement::Quadrisect;
     far_ext::BoundaryRule boundary = far_ext::BoundaryRule::Fixed;
     eval::CascadeSolver solver = eval::CascadeSolver::ConjugateGradients;
-    int sweeps =
-        0;  ///< on the finest level, coarser ones by eval::CountSweeps; 0: by one of the following
-    int iterations = 0;       ///< the same on every level
-    double tolerance = 1e-6;  ///< else: conjugate gradients to this residual
-    bool isGraph = false;     ///< filters heights z over the plane of x and y
+    SmoothStop stop{};  ///< the exact solver needs none; Jacobi sweeps are counted
+    SmoothConstraint constraint = SmoothConstraint::None;
+    OnCollapse onCollapse = OnCollapse::Stop;
     bool keepsCreases = false;
-    bool preservesVolume = false;  ///< of closed components
-    bool limitsWidth =
-        false;  ///< takes 0.95 of the critical width where the width asked for is above it
-    bool keepsResult = false;  ///< goes on to the last level when a component shrinks below half
-    bool isSingle = false;     ///< Jacobi sweeps in single precision
+    Precision precision = Precision::Double;  ///< of Jacobi sweeps
 };
 
 /// The closed component that shrank most.
 struct SmoothShrinkage {
-    Index firstVertex = -1;    ///< of the component, in the control mesh; -1 without any
+    Index firstVertex = 0;     ///< of the component, in the control mesh
     int level = 0;             ///< where it was least
     double radiusRatio = 1.0;  ///< mean distance from its middle, over that of the start surface
 };
@@ -50,8 +74,8 @@ struct SmoothReport {
     std::vector<eval::CascadeStepReport> levels;
     double meanEdge = 0.0;            ///< of the control mesh
     double largestWidth = 0.0;        ///< as used
-    std::optional<double> limitedBy;  ///< factor on all widths that limitsWidth applied
-    SmoothShrinkage shrinkage;
+    std::optional<double> limitedBy;  ///< factor on all widths that LimitWidth applied
+    std::optional<SmoothShrinkage> shrinkage;
     std::optional<double> criticalFactor;  ///< measured: the largest factor, at most 1, on the
                                            ///< widths asked for that the closed components carry
     bool hasCollapsed =
@@ -65,26 +89,33 @@ struct SmoothReport {
     bool HasConverged() const;  ///< and not collapsed
 };
 
+struct SmoothResult {
+    /// Without creases and corners unless they were kept; primvar `width` is the filter width at
+    /// each vertex. None where a component collapsed, unless results are to be kept.
+    std::optional<Scene> mesh;
+    SmoothReport report;
+};
+
 /// Refines a mesh and smooths it by curvature motion: the cascadic geometric filter.
 ///
-/// Topology  of uniform refinement with the scene's scheme, or of bisection; positions start from
+/// Topology  of uniform refinement with the model's scheme, or of bisection; positions start from
 ///           linear interpolation.
-/// Result    an approximation of the filtered surface, with texture coordinates by the scene's rule
-///           and, as primvar `width`, the filter width at each vertex. Creases and corners are left
-///           out unless they were kept. Where a component collapsed and results are not to be kept,
-///           an empty mesh.
-///
+/// Result    an approximation of the filtered surface, with texture coordinates by the model's
+///           rule.
 /// Collapse  A width above what a closed component carries has no fixed point: it shrinks to
 ///           nothing with the levels. Where one shrank suspiciously, the critical width is measured
 ///           on a grid of 10 000 vertices at most [Cascade 7].
 ///
-/// \param scene   of the scheme Loop where triangles are to stay triangles
+/// \param model   of the scheme Loop where triangles are to stay triangles
 /// \param job     told of progress, and of a metric that was frozen, sharp corners, volumes that
 ///                could not be kept
-/// \throws Error  BadMesh: not manifold or oriented two ways; a width above 1e6 of the mesh's size;
-///                for graphs, faces that overlap in the plane.  As SmoothLevels
+/// \throws Error  BadMesh: not manifold or oriented two ways; a width above 1e6 of the mesh's size,
+///                or that is no number from 0 up; for graphs, faces that overlap in the plane.
+///                BadOption: a residual for Jacobi sweeps, widths for another number of vertices.
+///                As SmoothLevels
+/// \throws Stopped
 /// Source  [Diewald02] Sec. 5 to 8; [Cascade 2], [Cascade 9]
-Scene Smooth(Scene const& scene, Far::TopologyRefiner const& refiner, FilterWidths const& widths,
-             SmoothOptions const& options, Job& job, SmoothReport& report);
+SmoothResult Smooth(Model const& model, FilterWidths const& widths, SmoothOptions const& options,
+                    Job& job);
 
 }  // namespace limn::engine

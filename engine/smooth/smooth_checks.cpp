@@ -33,22 +33,23 @@ SmoothComponents::SmoothComponents(Far::TopologyLevel const& level) {
     }
 }
 
-void RefuseDefects(Scene const& scene, Far::TopologyLevel const& level, Job& job) {
-    for (Defect const& defect : FindDefects(scene, level)) {
+void RefuseDefects(Model const& model, Job& job) {
+    for (Defect const& defect : FindDefects(model)) {
         for (char const* kind : {"non_manifold_edge", "non_manifold_vertex", "winding",
                                  "not_orientable", "repeated_corner"}) {
             if (defect.kind == kind)
                 throw Error(
                     ErrorCode::BadMesh,
                     fmt::format("{}: {}; a geometric filter needs a manifold, oriented one way",
-                                scene.path, defect.message));
+                                model.GetPath(), defect.message));
         }
-        job.Warn(fmt::format("{}: {}", scene.path, defect.message));
+        job.Warn(fmt::format("{}: {}", model.GetPath(), defect.message));
     }
 }
 
-void RequireGraph(Scene const& scene, Far::TopologyLevel const& level) {
-    far_ext::Points const points(scene.positions);
+void RequireGraph(Model const& model) {
+    auto const& level = model.GetLevel();
+    far_ext::Points const points(model.GetPositions());
     double direction = 0.0;
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         auto const vertices = level.GetFaceVertices(face);
@@ -61,17 +62,17 @@ void RequireGraph(Scene const& scene, Far::TopologyLevel const& level) {
             if (turn != 0.0 && (turn > 0.0) == (direction > 0.0)) continue;
             throw Error(ErrorCode::BadMesh,
                         fmt::format("{}: {} is folded, hollow or without area in the plane of x "
-                                    "and y; `isGraph` needs heights z over a "
+                                    "and y; `Graph` needs heights z over a "
                                     "plane of convex faces",
-                                    scene.path, scene.NameFace(face)));
+                                    model.GetPath(), model.NameFace(face)));
         }
     }
 }
 
-void WarnOfSharpCorners(Scene const& scene, Far::TopologyLevel const& level,
-                        far_ext::CascadeLevel const& first, std::vector<double> const& widths,
-                        Job& job) {
-    far_ext::Points const points(scene.positions);
+void WarnOfSharpCorners(Model const& model, far_ext::CascadeLevel const& first,
+                        std::vector<double> const& widths, Job& job) {
+    auto const& level = model.GetLevel();
+    far_ext::Points const points(model.GetPositions());
     std::vector<double> angles(level.GetNumVertices(), 0.0);
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         auto const vertices = level.GetFaceVertices(face);
@@ -95,11 +96,11 @@ void WarnOfSharpCorners(Scene const& scene, Far::TopologyLevel const& level,
         if (sharpest < 0 || angles[vertex] < angles[sharpest]) sharpest = vertex;
     }
     if (count == 0) return;
-    job.Warn(
-        fmt::format("{}: at vertex {}{} the faces' angles add up to {:.1f} degrees; below 180 the "
-                    "filter's triangles degenerate with the levels",
-                    scene.path, sharpest, count > 1 ? fmt::format(" and {} more", count - 1) : "",
-                    angles[sharpest] * 180.0 / std::numbers::pi));
+    job.Warn(fmt::format(
+        "{}: at vertex {}{} the faces' angles add up to {:.1f} degrees; below 180 the "
+        "filter's triangles degenerate with the levels",
+        model.GetPath(), sharpest, count > 1 ? fmt::format(" and {} more", count - 1) : "",
+        angles[sharpest] * 180.0 / std::numbers::pi));
 }
 
 }  // namespace limn::engine

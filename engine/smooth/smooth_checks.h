@@ -6,12 +6,12 @@
 #include <opensubdiv/far/topologyLevel.h>
 
 #include "engine/scene/job.h"
-#include "engine/scene/scene.h"
+#include "engine/scene/model.h"
 #include "far_ext/cascade/cascade_level.h"
 
 namespace limn::engine {
 
-// What limn smooth asks of a control mesh, and says of it. `level` is the scene's topology.
+// What limn smooth asks of a control mesh, and says of it.
 
 /// Components of a mesh.
 struct SmoothComponents {
@@ -26,21 +26,20 @@ struct SmoothComponents {
 /// Warns of defects that do not matter here.
 ///
 /// \throws Error  BadMesh: not manifold, or not oriented one way
-void RefuseDefects(Scene const& scene, Far::TopologyLevel const& level, Job& job);
+void RefuseDefects(Model const& model, Job& job);
 
 /// Faces must lie side by side in the plane of x and y: all turn the same way, at each corner.
 ///
 /// \throws Error  BadMesh: a face that does not (named)
-void RequireGraph(Scene const& scene, Far::TopologyLevel const& level);
+void RequireGraph(Model const& model);
 
 /// Warns of corners so sharp that triangles degenerate there with the levels.
 ///
 /// \param first   the first level's rows
-/// \param widths  per vertex of the first level or of the scene, whose vertices are the first ones
+/// \param widths  per vertex of the first level or of the model, whose vertices are the first ones
 ///                there; empty: everywhere some
 /// Source  [Diewald02] Fig. 9; [Cascade 8]
-void WarnOfSharpCorners(Scene const& scene, Far::TopologyLevel const& level,
-                        far_ext::CascadeLevel const& first, std::vector<double> const& widths,
-                        Job& job);
+void WarnOfSharpCorners(Model const& model, far_ext::CascadeLevel const& first,
+                        std::vector<double> const& widths, Job& job);
 
 }  // namespace limn::engine

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "engine/scene/job.h"
 #include "engine/scene/refine.h"
 #include "eval/differential/refine_values.h"
 #include "far_ext/error.h"
@@ -29,49 +28,47 @@ void AppendMeans(std::vector<Value>& values, size_t numChannels,
     }
 }
 
-far_ext::Bisection StartBisection(Scene const& scene, bool keepsCreases) {
-    for (Index face = 0; face < scene.cage.GetNumFaces(); ++face) {
-        if (scene.cage.faceSizes[face] == 3) continue;
+far_ext::Bisection StartBisection(Model const& model, bool keepsCreases) {
+    auto const& cage = model.GetCage();
+    for (Index face = 0; face < cage.GetNumFaces(); ++face) {
+        if (cage.faceSizes[face] == 3) continue;
         throw Error(ErrorCode::BadMesh,
                     fmt::format("{}: {} has {} corners; `refinement` bisect needs triangles, "
                                 "quadrisect takes all polygons",
-                                scene.path, scene.NameFace(face), scene.cage.faceSizes[face]));
+                                model.GetPath(), model.NameFace(face), cage.faceSizes[face]));
     }
     auto const isInfinite = [](float sharpness) {
         return sharpness >= far_ext::kInfiniteSharpness;
     };
     std::vector<std::array<Index, 2>> creases;
     std::vector<Index> corners;
-    for (size_t i = 0; keepsCreases && i < scene.cage.creaseSharpness.size(); ++i) {
-        if (isInfinite(scene.cage.creaseSharpness[i]))
-            creases.push_back(
-                {scene.cage.creaseVertexPairs[2 * i], scene.cage.creaseVertexPairs[2 * i + 1]});
+    for (size_t i = 0; keepsCreases && i < cage.creaseSharpness.size(); ++i) {
+        if (isInfinite(cage.creaseSharpness[i]))
+            creases.push_back({cage.creaseVertexPairs[2 * i], cage.creaseVertexPairs[2 * i + 1]});
     }
-    for (size_t i = 0; keepsCreases && i < scene.cage.cornerSharpness.size(); ++i) {
-        if (isInfinite(scene.cage.cornerSharpness[i]))
-            corners.push_back(scene.cage.cornerVertices[i]);
+    for (size_t i = 0; keepsCreases && i < cage.cornerSharpness.size(); ++i) {
+        if (isInfinite(cage.cornerSharpness[i])) corners.push_back(cage.cornerVertices[i]);
     }
-    far_ext::Bisection bisection(scene.cage.numVertices, scene.cage.faceVertices, scene.positions,
+    far_ext::Bisection bisection(cage.numVertices, cage.faceVertices, model.GetPositions(),
                                  std::move(creases), std::move(corners));
-    if (scene.HasUVs())
-        bisection.SetFVarChannel(scene.cage.fvarChannels[0].numValues,
-                                 scene.cage.fvarChannels[0].valueIndices);
+    if (model.HasUVs())
+        bisection.SetFVarChannel(cage.fvarChannels[0].numValues, cage.fvarChannels[0].valueIndices);
     return bisection;
 }
 
 }  // namespace
 
-SmoothLevels::SmoothLevels(Scene const& scene, int numLevels, SmoothRefinement refinement,
+SmoothLevels::SmoothLevels(Model const& model, int numLevels, SmoothRefinement refinement,
                            bool keepsCreases)
-    : _scene(scene),
+    : _model(model),
       _refinement(refinement),
       _keepsCreases(keepsCreases),
-      _uvs(scene.uvs),
-      _primvars(scene.primvars) {
+      _uvs(model.GetUVs()),
+      _primvars(model.GetPrimvars()) {
     if (refinement == SmoothRefinement::Bisect)
-        _bisection = StartBisection(scene, keepsCreases);
+        _bisection = StartBisection(model, keepsCreases);
     else
-        _refiner = MakeUniformRefiner(scene, numLevels);
+        _refiner = MakeUniformRefiner(model.GetCage(), model.GetPath(), numLevels);
 }
 
 far_ext::CascadeMesh const& SmoothLevels::MakeNext() {
@@ -84,7 +81,7 @@ far_ext::CascadeMesh const& SmoothLevels::MakeNext() {
         }
         return _mesh;
     }
-    Index const numCoarse = _level == 1 ? _scene.cage.numVertices : _mesh.numVertices;
+    Index const numCoarse = _level == 1 ? _model.GetCage().numVertices : _mesh.numVertices;
     _mesh = _bisection->Refine();
     std::vector<std::array<Index, 2>> parents;
     for (Index vertex = numCoarse; vertex < _mesh.numVertices; ++vertex) {
@@ -122,8 +119,8 @@ std::vector<double> SmoothLevels::FindCornerUVs() {
     return corners;
 }
 
-Scene SmoothLevels::MakeScene() const {
-    Scene fine = _bisection ? MakeBisectedScene() : RefineAllButPositions(_scene, *_refiner);
+Scene SmoothLevels::MakeScene(Job& job) const {
+    Scene fine = _bisection ? MakeBisectedScene() : RefineAllButPositions(_model, *_refiner, job);
     if (!_keepsCreases) {
         fine.cage.creaseVertexPairs.clear();
         fine.cage.creaseSharpness.clear();
@@ -135,10 +132,10 @@ Scene SmoothLevels::MakeScene() const {
 
 Scene SmoothLevels::MakeBisectedScene() const {
     Scene fine;
-    fine.path = _scene.path;
-    fine.name = _scene.name;
-    fine.cage.scheme = _scene.cage.scheme;
-    fine.cage.options = _scene.cage.options;
+    fine.path = _model.GetPath();
+    fine.name = _model.GetName();
+    fine.cage.scheme = _model.GetCage().scheme;
+    fine.cage.options = _model.GetCage().options;
     fine.cage.numVertices = _mesh.numVertices;
     fine.cage.faceVertices = _mesh.faces;
     fine.cage.faceSizes.assign(static_cast<size_t>(_mesh.GetNumFaces()), 3);
@@ -149,19 +146,19 @@ Scene SmoothLevels::MakeBisectedScene() const {
     }
     fine.cage.cornerVertices = _mesh.corners;
     fine.cage.cornerSharpness.assign(_mesh.corners.size(), far_ext::kInfiniteSharpness);
-    if (_scene.HasUVs()) {
+    if (_model.HasUVs()) {
         fine.uvs = _uvs;
         fine.cage.fvarChannels.push_back(
             {static_cast<Index>(_uvs.size() / 2), _bisection->GetFVarValues()});
     }
     fine.primvars = _primvars;
     auto const& base = _bisection->GetBaseFaces();
-    std::vector<char> isHole(_scene.cage.faceSizes.size(), 0);
-    for (Index hole : _scene.cage.holes) isHole[hole] = 1;
+    std::vector<char> isHole(_model.GetCage().faceSizes.size(), 0);
+    for (Index hole : _model.GetCage().holes) isHole[hole] = 1;
     for (size_t face = 0; face < base.size(); ++face) {
         if (isHole[base[face]]) fine.cage.holes.push_back(static_cast<Index>(face));
     }
-    InheritGroups(_scene, base, fine);
+    fine.groups = InheritGroups(_model.GetGroups(), base);
     return fine;
 }
 

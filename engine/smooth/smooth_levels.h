@@ -8,7 +8,8 @@
 
 #include <opensubdiv/far/topologyRefiner.h>
 
-#include "engine/scene/scene.h"
+#include "engine/scene/job.h"
+#include "engine/scene/model.h"
 #include "far_ext/cascade/bisection.h"
 #include "far_ext/cascade/cascade_level.h"
 
@@ -19,12 +20,12 @@ enum class SmoothRefinement { Quadrisect, Bisect };
 /// A cascade's meshes, made level after level, with what hangs on their faces and corners.
 class SmoothLevels {
 public:
-    /// \param scene         kept by reference
+    /// \param model         kept by reference
     /// \param keepsCreases  whether creases and corners split the filter, as long as their
     ///                      sharpness lasts; bisection keeps infinitely sharp ones only
     /// \throws Error        BadOption: bisection of faces that are no triangles.  As
     ///                      RefineUniformly
-    SmoothLevels(Scene const& scene, int numLevels, SmoothRefinement refinement, bool keepsCreases);
+    SmoothLevels(Model const& model, int numLevels, SmoothRefinement refinement, bool keepsCreases);
 
     /// Makes the next level's mesh. \return it, until the next call
     far_ext::CascadeMesh const& MakeNext();
@@ -32,21 +33,21 @@ public:
     /// The mesh made last; before that none.
     far_ext::CascadeMesh const& GetMesh() const { return _mesh; }
 
-    /// Per face of the mesh made last: the face of the scene it lies in.
+    /// Per face of the mesh made last: the face of the model it lies in.
     std::vector<Index> FindBaseFaces() const;
 
-    /// Texture coordinates of the mesh made last, 2 per corner of its faces. Needs a scene that has
+    /// Texture coordinates of the mesh made last, 2 per corner of its faces. Needs a model that has
     /// some.
     std::vector<double> FindCornerUVs();
 
     /// The last level as a scene, all but positions: topology, texture coordinates, groups,
     /// primvars, holes; creases and corners only where they were kept.
-    Scene MakeScene() const;
+    Scene MakeScene(Job& job) const;
 
 private:
     Scene MakeBisectedScene() const;
 
-    Scene const& _scene;
+    Model const& _model;
     SmoothRefinement _refinement;
     bool _keepsCreases;
     int _level = 0;

@@ -99,8 +99,7 @@ void SolveOpenCurve(std::vector<DoubleLanes> const& deltas, DoubleLanes const& f
     points.back() = last;
 }
 
-Curve RefineCurveDifferentially(Curve const& coarse, CurveRule rule, int levels,
-                                CurveReport* report) {
+CurveResult RefineCurveDifferentially(Curve const& coarse, CurveRule rule, int levels) {
     Curve spatial = coarse, deltas{FindCurveDeltas(coarse), coarse.isClosed};
     for (int level = 0; level < levels; ++level) {
         spatial = SubdivideCurve(spatial, rule);
@@ -126,8 +125,7 @@ Curve RefineCurveDifferentially(Curve const& coarse, CurveRule rule, int levels,
         size += deltas.points[i].square().sum();
     }
     found.residual = size > 0.0 ? std::sqrt(misfit / size) : 0.0;
-    if (report) *report = found;
-    return fine;
+    return {std::move(fine), found};
 }
 
 }  // namespace limn::eval

@@ -43,11 +43,15 @@ struct CurveReport {
     double compatibilityDefect = 0.0;
 };
 
+struct CurveResult {
+    Curve curve;
+    CurveReport report;
+};
+
 /// Subdivides a curve's differential coordinates and finds the curve that has them: a closed one
 /// with its first point, an open one with its ends where the rule itself puts them.
 ///
 /// Source  [Zhu11] Sec. 3.5, curve case
-Curve RefineCurveDifferentially(Curve const& coarse, CurveRule rule, int levels,
-                                CurveReport* report = nullptr);
+CurveResult RefineCurveDifferentially(Curve const& coarse, CurveRule rule, int levels);
 
 }  // namespace limn::eval

@@ -58,7 +58,7 @@ std::vector<double> FindFaceNormals(Level const& level, std::span<double const> 
 }
 
 MeshCurvature MeasureMeshCurvature(Level const& level, std::span<double const> positions,
-                                   double orientation) {
+                                   Orientation orientation) {
     size_t const numVertices = level.GetNumVertices();
     std::vector<double> const faceNormals = FindFaceNormals(level, positions);
     Points const points(positions), normals(faceNormals);
@@ -86,7 +86,8 @@ MeshCurvature MeasureMeshCurvature(Level const& level, std::span<double const> p
         double uu = 0.0, uv = 0.0, vv = 0.0;
         for (Index edge : level.GetVertexEdges(vertex)) {
             Vector const side = points[far_ext::GetOtherEnd(level, edge, vertex)] - points[vertex];
-            double const a = side.dot(u), b = side.dot(v), bend = orientation * bends[edge] / area;
+            double const a = side.dot(u), b = side.dot(v),
+                         bend = GetSign(orientation) * bends[edge] / area;
             uu += bend * a * a;
             uv += bend * a * b;
             vv += bend * b * b;

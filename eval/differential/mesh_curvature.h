@@ -26,9 +26,9 @@ struct MeshCurvature {
 };
 
 /// \param positions    3 per vertex of the level
-/// \param orientation  +1, or -1 to turn the outside round
 MeshCurvature MeasureMeshCurvature(Far::TopologyLevel const& level,
-                                   std::span<double const> positions, double orientation);
+                                   std::span<double const> positions,
+                                   Orientation orientation = Orientation::Right);
 
 /// Thin-plate energy: the area-weighted mean of k1^2 + k2^2 (1/length^2), and its integral, which
 /// has no scale.

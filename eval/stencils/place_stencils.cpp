@@ -73,7 +73,7 @@ SurfaceDerivatives PlaceStencils::ApplyRow(size_t row, far_ext::Points points) c
 /// \param derive    row -> SurfaceDerivatives
 template <class Derive>
 std::vector<SurfaceSample> PlaceStencils::EvaluateWith(std::span<double const> positions,
-                                                       double orientation, double accuracy,
+                                                       Orientation orientation, double accuracy,
                                                        Derive const& derive) const {
     std::vector<SurfaceSample> samples(_places.size());
     double const shortest = accuracy * GetBounds(positions).diagonal().norm();
@@ -104,14 +104,14 @@ std::vector<SurfaceSample> PlaceStencils::EvaluateWith(std::span<double const> p
 }
 
 std::vector<SurfaceSample> PlaceStencils::Evaluate(std::span<double const> positions,
-                                                   double orientation) const {
+                                                   Orientation orientation) const {
     far_ext::CheckPoints(positions, GetNumVertices());
     return EvaluateWith(positions, orientation, 1e-7,
                         [&](size_t row) { return ApplyRow(row, positions); });
 }
 
 std::vector<SurfaceSample> PlaceStencils::Evaluate(std::span<double const> positions,
-                                                   double orientation,
+                                                   Orientation orientation,
                                                    StencilEvaluator const& evaluator) const {
     far_ext::CheckPoints(positions, GetNumVertices());
     Eigen::Vector3d const centre = GetBounds(positions).center();

@@ -41,13 +41,13 @@ public:
     ///
     /// \throws Error  BadOption: positions that do not reach all vertices
     std::vector<SurfaceSample> Evaluate(std::span<double const> positions,
-                                        double orientation) const;
+                                        Orientation orientation) const;
 
     /// The same with the rows applied in float. Positions are taken relative to their centre first.
     ///
     /// \param evaluator  over MakeRows()
     /// \throws Error     BadMesh: a position that float cannot hold; BadOption: as above
-    std::vector<SurfaceSample> Evaluate(std::span<double const> positions, double orientation,
+    std::vector<SurfaceSample> Evaluate(std::span<double const> positions, Orientation orientation,
                                         StencilEvaluator const& evaluator) const;
 
     /// The rows in float.
@@ -57,8 +57,9 @@ private:
     void AddRow(FaceTree const& tree, PatchPoint const& at);
     SurfaceDerivatives ApplyRow(size_t row, far_ext::Points points) const;
     template <class Derive>
-    std::vector<SurfaceSample> EvaluateWith(std::span<double const> positions, double orientation,
-                                            double accuracy, Derive const& derive) const;
+    std::vector<SurfaceSample> EvaluateWith(std::span<double const> positions,
+                                            Orientation orientation, double accuracy,
+                                            Derive const& derive) const;
 
     Index GetNumVertices() const { return _surface.GetRefiner().GetLevel(0).GetNumVertices(); }
 

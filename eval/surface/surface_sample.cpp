@@ -46,15 +46,16 @@ bool HasTangentPlane(SurfaceDerivatives const& d, double leastSine) {
 
 Curvature ComputeCurvature(Eigen::Vector3d const& ds, Eigen::Vector3d const& dt,
                            Eigen::Vector3d const& dss, Eigen::Vector3d const& dst,
-                           Eigen::Vector3d const& dtt, double orientation) {
+                           Eigen::Vector3d const& dtt, Orientation orientation) {
     Eigen::Vector3d const n = ds.cross(dt).normalized();
     double const e = -n.dot(dss), f = -n.dot(dst), g = -n.dot(dtt);
     double const p = ds.norm();
     Eigen::Vector3d const a1 = ds / p, a2 = n.cross(a1);
     double const q = dt.dot(a1), r = dt.dot(a2);
-    double const W11 = orientation * e / (p * p);
-    double const W12 = orientation * (f - e * q / p) / (p * r);
-    double const W22 = orientation * (g - 2.0 * f * q / p + e * q * q / (p * p)) / (r * r);
+    double const sign = GetSign(orientation);
+    double const W11 = sign * e / (p * p);
+    double const W12 = sign * (f - e * q / p) / (p * r);
+    double const W22 = sign * (g - 2.0 * f * q / p + e * q * q / (p * p)) / (r * r);
 
     Curvature curvature;
     double const half = 0.5 * (W11 - W22), D = std::sqrt(half * half + W12 * W12);
@@ -81,17 +82,18 @@ std::array<double, 6> EvaluateDerivatives(FaceTree const& tree, PatchPoint const
     return {at.origin[channel] + v[0], v[1] * one, v[2] * one, v[3] * two, v[4] * two, v[5] * two};
 }
 
-SurfaceSample MakeSample(SurfaceDerivatives const& d, double orientation) {
+SurfaceSample MakeSample(SurfaceDerivatives const& d, Orientation orientation) {
     SurfaceSample sample;
     sample.position = d.position;
     sample.tangentS = d.ds;
     sample.tangentT = d.dt;
-    sample.normal = orientation * d.ds.cross(d.dt).normalized();
+    sample.normal = GetSign(orientation) * d.ds.cross(d.dt).normalized();
     sample.curvature = ComputeCurvature(d.ds, d.dt, d.dss, d.dst, d.dtt, orientation);
     return sample;
 }
 
-SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t, double orientation) {
+SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t,
+                             Orientation orientation) {
     SurfaceDerivatives const here = EvaluateDerivatives(tree, domain, s, t);
     SurfaceSample sample;
     sample.position = here.position;
@@ -114,7 +116,7 @@ SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t, dou
         sample.curvature.direction = Eigen::Vector3d::UnitX();
         return sample;
     }
-    sample.normal = orientation * shape.ds.cross(shape.dt).normalized();
+    sample.normal = GetSign(orientation) * shape.ds.cross(shape.dt).normalized();
 
     PatchPoint const apart = tree.Locate(domain, placeS, placeT, FaceTree::kCurvatureDepth);
     sample.isMoved = apart.isMoved;

@@ -48,7 +48,8 @@ SurfaceDerivatives EvaluateDerivatives(FaceTree const& tree, PatchPoint const& a
 /// \pre ds and dt are not parallel
 Curvature ComputeCurvature(Eigen::Vector3d const& ds, Eigen::Vector3d const& dt,
                            Eigen::Vector3d const& dss, Eigen::Vector3d const& dst,
-                           Eigen::Vector3d const& dtt, double orientation);
+                           Eigen::Vector3d const& dtt,
+                           Orientation orientation = Orientation::Right);
 
 /// True if the tangents span a plane: neither is zero, and the sine of their angle is above a
 /// bound. Rounding leaves about 1e-15 of each product in their cross product; below 1e-12 it says
@@ -56,7 +57,7 @@ Curvature ComputeCurvature(Eigen::Vector3d const& ds, Eigen::Vector3d const& dt,
 bool HasTangentPlane(SurfaceDerivatives const& derivatives, double leastSine = 1e-12);
 
 /// The sample that derivatives make. \pre HasTangentPlane
-SurfaceSample MakeSample(SurfaceDerivatives const& derivatives, double orientation);
+SurfaceSample MakeSample(SurfaceDerivatives const& derivatives, Orientation orientation);
 
 /// Value and derivatives of one channel of a piece: P, Ps, Pt, Pss, Pst, Ptt by (s,t) of the
 /// domain.
@@ -64,8 +65,8 @@ std::array<double, 6> EvaluateDerivatives(FaceTree const& tree, PatchPoint const
 
 /// Evaluates one place; the tree's first three channels are the position.
 ///
-/// \param orientation  +1, or -1 to turn the normal round
-SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t, double orientation);
+SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t,
+                             Orientation orientation = Orientation::Right);
 
 /// One channel's value at a place, in double; nearer than 2^-maxDepth to an irregular corner, at
 /// that distance.

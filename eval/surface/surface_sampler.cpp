@@ -8,7 +8,8 @@
 
 namespace limn::eval {
 
-SurfaceSampler::SurfaceSampler(FaceTree& tree, Quantity quantity, float orientation, Values values)
+SurfaceSampler::SurfaceSampler(FaceTree& tree, Quantity quantity, Orientation orientation,
+                               Values values)
     : _tree(tree),
       _quantity(quantity),
       _orientation(orientation),
@@ -71,7 +72,7 @@ void SurfaceSampler::EvaluateBlock(Lanes<Real>& lanes, PatchRun const& run, size
                                    lanes.y.data(),
                                    static_cast<int>(count),
                                    static_cast<float>(run.patch.scale),
-                                   _orientation,
+                                   static_cast<float>(GetSign(_orientation)),
                                    _planes.data(),
                                    kStride,
                                    _degenerate.data()};

@@ -28,12 +28,11 @@ public:
 
     /// \param tree         its first three channels are the position; kept by reference, it must
     ///                     outlive the sampler
-    /// \param orientation  +1, or -1 to turn normals round
     /// \param values       which of the tree's channels to evaluate, too
-    SurfaceSampler(FaceTree& tree, Quantity quantity, float orientation, Values values);
+    SurfaceSampler(FaceTree& tree, Quantity quantity, Orientation orientation, Values values);
 
     /// With all of the tree's channels.
-    SurfaceSampler(FaceTree& tree, Quantity quantity, float orientation)
+    SurfaceSampler(FaceTree& tree, Quantity quantity, Orientation orientation)
         : SurfaceSampler(tree, quantity, orientation, {3, tree.GetLength() - 3}) {}
 
     /// True where samplers of both quantities give the same bits.
@@ -94,7 +93,7 @@ private:
 
     FaceTree& _tree;
     Quantity _quantity;
-    float _orientation;
+    Orientation _orientation;
     Values _values;
     int _numChannels;
     Counts _counts;

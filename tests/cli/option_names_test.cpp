@@ -116,8 +116,8 @@ TEST(OptionNames, EveryFlagOfTheTableIsAnOption) {
 
 TEST(OptionNames, MembersInBackquotesBecomeFlags) {
     EXPECT_EQ(NameFlags("`levels`: 11 is not from 0 to 10"), "--levels: 11 is not from 0 to 10");
-    EXPECT_EQ(NameFlags("use `precision` double or `usesCholesky`"),
-              "use --precision double or --solver cholesky");
+    EXPECT_EQ(NameFlags("use `precision` double or `PaintedWidths`"),
+              "use --precision double or --width-texture");
 }
 
 TEST(OptionNames, OtherBackquotesStay) {

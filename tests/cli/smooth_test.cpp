@@ -12,8 +12,8 @@
 #include "engine/images/exr_lookup.h"
 #include "engine/io/mesh_reader.h"
 #include "engine/io/mesh_writer.h"
-#include "engine/scene/refine.h"
 #include "support/cli.h"
+#include "support/fit_meshes.h"
 #include "support/refined.h"
 
 namespace limn {
@@ -177,7 +177,7 @@ TEST_F(CliSmooth, WithoutWidthItRefinesLinearly) {
     auto scene = engine::ReadMesh(spot);
     scene.cage.scheme = Sdc::SCHEME_BILINEAR;
     EXPECT_LT(test::LargestDifference(Smooth(spot, {"--width", "0", "--levels", "2"}).positions,
-                                      engine::RefineUniformly(scene, 2, false).positions),
+                                      test::Refine(scene, 2).positions),
               1e-15);
 }
 
@@ -589,7 +589,7 @@ TEST_F(CliSmooth, HeightFieldsKeepTheirPlane) {
     auto scene = engine::ReadMesh(grid);
     for (size_t i = 0; i < scene.positions.size(); i += 3)
         scene.positions[i + 2] = std::fmod(static_cast<double>(i), 7.0) * 0.1;
-    engine::WriteMesh(folder / "heights.obj", scene, true, nullptr);
+    engine::WriteMesh(folder / "heights.obj", scene, Precision::Double);
     auto const found =
         Smooth(folder / "heights.obj", {"--levels", "3", "--graph", "--width", "0.5"});
     auto const start = Interpolate(scene, 3);

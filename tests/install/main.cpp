@@ -18,7 +18,7 @@ int main() {
     limn::eval::LimitSurface const surface(*refiner);
     limn::eval::FaceTree tree(surface, points, 3);
     tree.Bind(0);
-    auto const corner = limn::eval::EvaluateSample(tree, 0, 0.0, 0.0, 1.0);
+    auto const corner = limn::eval::EvaluateSample(tree, 0, 0.0, 0.0);
     // x of corner (-1,-1,-1), of its edge ends (1, -1, -1) and of its face opposites (1, 1, -1).
     double const expected = -(9.0 + 4.0 * (1 + 1 - 1) + (1 - 1 - 1) * 1.0) / 24.0;
     std::printf("%.12f %.12f\n", corner.position[0], expected);

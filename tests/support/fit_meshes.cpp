@@ -92,7 +92,8 @@ engine::Scene MakeIrregularTriangles(int n, int m, unsigned seed) {
 }
 
 engine::Scene Refine(engine::Scene const& scene, int levels) {
-    return engine::RefineUniformly(scene, levels, false);
+    engine::Job job;
+    return engine::RefineUniformly(engine::Model::Build(scene), {.levels = levels}, job);
 }
 
 namespace {
@@ -192,15 +193,22 @@ std::vector<engine::Scene> MakeNoisyScenes() {
 }
 
 engine::Scene Join(std::vector<engine::Scene> const& scenes) {
-    engine::Scene all = scenes.front();
-    for (size_t i = 1; i < scenes.size(); ++i) {
+    engine::Scene all;
+    all.path = scenes.front().path;
+    all.name = scenes.front().name;
+    all.cage.scheme = scenes.front().cage.scheme;
+    all.cage.options = scenes.front().cage.options;
+    for (engine::Scene const& scene : scenes) {
         Index const first = all.cage.numVertices;
-        auto const& cage = scenes[i].cage;
-        all.positions.insert(all.positions.end(), scenes[i].positions.begin(),
-                             scenes[i].positions.end());
+        auto const& cage = scene.cage;
+        all.positions.insert(all.positions.end(), scene.positions.begin(), scene.positions.end());
         all.cage.faceSizes.insert(all.cage.faceSizes.end(), cage.faceSizes.begin(),
                                   cage.faceSizes.end());
         for (Index vertex : cage.faceVertices) all.cage.faceVertices.push_back(first + vertex);
+        for (Index vertex : cage.creaseVertexPairs)
+            all.cage.creaseVertexPairs.push_back(first + vertex);
+        all.cage.creaseSharpness.insert(all.cage.creaseSharpness.end(),
+                                        cage.creaseSharpness.begin(), cage.creaseSharpness.end());
         all.cage.numVertices += cage.numVertices;
     }
     return all;

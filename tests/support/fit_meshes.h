@@ -33,7 +33,7 @@ void AddNoise(engine::Scene& scene, double share, unsigned seed);
 /// Closed and open, regular and creased, quads and triangles, all with noise.
 std::vector<engine::Scene> MakeNoisyScenes();
 
-/// Several scenes in one, side by side.
+/// The meshes and creases of several scenes in one, with the first's rules.
 engine::Scene Join(std::vector<engine::Scene> const& scenes);
 
 }  // namespace limn::test

@@ -51,7 +51,7 @@ private:
         TexelStrip strip;
         explicit Worker(AuditInput const& input)
             : tree(input.surface, input.model.GetPositions(), 3),
-              sampler(tree, eval::Quantity::Tangents, 1.0f),
+              sampler(tree, eval::Quantity::Tangents, Orientation::Right),
               raster(input.uvSurface, input.model.GetUVs()) {}
     };
 
@@ -145,7 +145,7 @@ std::vector<double> GaussBonnetAuditor::FindAreas() const {
         tree.Bind(face);
         eval::ForEachGaussPoint(
             _input.surface, face, [&](eval::SurfacePlace const& place, double weight) {
-                auto const x = eval::EvaluateSample(tree, place.domain, place.s, place.t, 1.0);
+                auto const x = eval::EvaluateSample(tree, place.domain, place.s, place.t);
                 areas[_components.ofFace[face]] += weight * x.tangentS.cross(x.tangentT).norm();
             });
     }

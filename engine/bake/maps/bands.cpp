@@ -19,10 +19,9 @@ public:
     BandsMap(MapTraits traits, MapOptions const& options)
         : Map(std::move(traits)), _numBands(options.bands), _frame(options) {}
 
-    void Prepare(BakedSurface const& baked, Job&) override {
-        auto const bands =
-            SplitIntoBands(baked.model.MakeScene(),
-                           eval::LimitOperator::Build(baked.model.GetRefiner()), _numBands);
+    void Prepare(BakedSurface const& baked, Job& job) override {
+        auto [bands, remainder] = SplitIntoBands(baked.model, _numBands, 0.0, job);
+        bands.push_back(std::move(remainder));
         for (size_t vertex = 0; vertex < baked.model.GetPositions().size(); vertex += 3) {
             for (int band = 1; band <= _numBands; ++band) {  // all but the base
                 for (size_t c = 0; c < 3; ++c) _values.push_back(bands[band][vertex + c]);

@@ -17,8 +17,8 @@ public:
     NoiseMap(MapTraits traits, MapOptions const& options)
         : Map(std::move(traits)), _options(options) {}
 
-    void Prepare(BakedSurface const& baked, Job&) override {
-        _noise = std::make_unique<SurfaceNoise>(baked.model.MakeScene(), _options.noise);
+    void Prepare(BakedSurface const& baked, Job& job) override {
+        _noise = std::make_unique<SurfaceNoise>(baked.model, _options.noise, job);
     }
 
     std::unique_ptr<MapSampler> MakeSampler() const override {
@@ -83,7 +83,7 @@ std::unique_ptr<Map> MakeNoiseMap(std::string const& name, MapOptions const& opt
         traits.channels = {"R", "G", "B"};
     }
     traits.optionText = fmt::format("octaves={} frequency={} gain={} seed={} normalize={} ramp={}",
-                                    options.noise.octaves, options.noise.frequency,
+                                    options.noise.octaves, options.noise.frequency.value_or(0.0),
                                     options.noise.gain, options.noise.seed, options.isNormalized,
                                     options.noiseRamp ? options.noiseRamp->GetText() : "none");
     return std::make_unique<NoiseMap>(std::move(traits), options);

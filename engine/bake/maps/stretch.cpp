@@ -36,7 +36,7 @@ struct AreaFinder {
         tree.Bind(face);
         raster.Bind(face);
         eval::ForEachGaussPoint(surface, face, [&](eval::SurfacePlace const& place, double weight) {
-            auto const sample = eval::EvaluateSample(tree, place.domain, place.s, place.t, 1.0);
+            auto const sample = eval::EvaluateSample(tree, place.domain, place.s, place.t);
             auto const [us, ut, vs, vt] = raster.GetJacobian(place.domain, place.s, place.t);
             areas.surface += weight * sample.tangentS.cross(sample.tangentT).norm();
             areas.texture += weight * std::abs(us * vt - ut * vs);

@@ -88,7 +88,7 @@ private:
         explicit Sampler(TensionMap const& map)
             : _restTree(map._restSurface, map._rest.GetPositions(), 3),
               _posedTree(map._posed->surface, map._posed->model.GetPositions(), 3),
-              _restSampler(_restTree, eval::Quantity::Tangents, 1.0f) {}
+              _restSampler(_restTree, eval::Quantity::Tangents, Orientation::Right) {}
 
         void Start(FaceSamples const& samples) override {
             _samples = samples;

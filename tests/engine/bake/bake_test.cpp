@@ -57,7 +57,7 @@ TEST(Bake, TexelsHoldTheLimitSurface) {
             double const u = (x + 0.5) / 48, v = 1.0 - (y + 0.5) / 48;
             int const i = static_cast<int>(u * 12), j = static_cast<int>(v * 8);
             tree.Bind(i * 8 + j);
-            auto const expected = eval::EvaluateSample(tree, 0, u * 12 - i, v * 8 - j, 1.0);
+            auto const expected = eval::EvaluateSample(tree, 0, u * 12 - i, v * 8 - j);
             auto const position = lookup.Look(folder / "position.exr", {"R", "G", "B"}, x, y);
             auto const normal = lookup.Look(folder / "normal.exr", {"R", "G", "B"}, x, y);
             auto const curvature =
@@ -128,8 +128,8 @@ TEST(Bake, BandsAddUpToTheWayFromTheSmoothBase) {
     test::TemporaryFolder const folder;
     engine::Scene const spot = test::LoadSpot();
     engine::Scene base = spot;
-    base.positions = engine::SplitIntoBands(
-        spot, eval::LimitOperator::Build(*far_ext::CreateRefiner(spot.cage)), 3)[0];
+    engine::Job job;
+    base.positions = engine::SplitIntoBands(engine::Model::Build(spot), 3, 0.0, job).bands[0];
     for (bool const isVector : {false, true}) {
         auto bands = MakeOptions(folder / "bands.exr", {"bands"}, 64);
         bands.bands = 3;

@@ -152,7 +152,7 @@ TEST_F(Layout, OptionTextTellsEveryOptionThatAffectsPixels) {
         [](BakeOptions& o) { o.compression = engine::ExrCompression::Piz; },
         [](BakeOptions& o) { o.groups = {"red"}; },
         [](BakeOptions& o) { o.groups = {"red", "blue"}; },
-        [](BakeOptions& o) { o.isLeftHanded = true; },
+        [](BakeOptions& o) { o.orientation = Orientation::Left; },
         [](BakeOptions& o) { o.encoding = engine::Encoding{0.5, 0.5}; },
         [](BakeOptions& o) { o.encoding = engine::Encoding{0.5, 0.25}; }};
     std::set<std::string> texts{TextOf("mean", options)};

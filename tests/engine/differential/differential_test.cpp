@@ -9,6 +9,7 @@
 #include "support/errors.h"
 #include "support/files.h"
 #include "support/fit_meshes.h"
+#include "support/listener.h"
 #include "support/refined.h"
 
 namespace limn {
@@ -17,15 +18,27 @@ namespace {
 using engine::DifferentialOptions;
 using far_ext::SubdivisionRule;
 
-engine::Scene Refine(engine::Scene const& scene, int levels, DifferentialOptions const& options,
-                     engine::DifferentialReport* report = nullptr) {
-    engine::DifferentialReport unused;
-    return engine::RefineDifferentially(scene, levels, options, 1.0, report ? *report : unused);
+/// The result, and what the job was warned of.
+struct Refined {
+    engine::Scene mesh;
+    engine::DifferentialReport report;
+    std::vector<std::string> warnings;
+};
+
+Refined RefineAndReport(engine::Scene const& scene, int levels, DifferentialOptions options) {
+    options.levels = levels;
+    engine::Job job;
+    auto [mesh, report] = engine::RefineDifferentially(engine::Model::Build(scene), options, job);
+    return {std::move(mesh), report, job.GetWarnings()};
+}
+
+engine::Scene Refine(engine::Scene const& scene, int levels, DifferentialOptions const& options) {
+    return RefineAndReport(scene, levels, options).mesh;
 }
 
 engine::Scene LoadBumpy() {  // an irregular, well-shaped sphere
     auto scene = test::LoadDifferential("icosa", Sdc::SCHEME_LOOP);
-    scene = engine::RefineUniformly(scene, 1, false);
+    scene = test::Refine(scene, 1);
     for (size_t i = 0; i < scene.positions.size(); ++i)
         scene.positions[i] *= 1.0 + 0.1 * std::sin(static_cast<double>(i / 3));
     return scene;
@@ -54,8 +67,7 @@ TEST(Differential, IsTheSameFromEverySide) {
 // The topology, and what goes with it, is that of the refinement in space.
 TEST(Differential, AttributesFollow) {
     auto const scene = test::MakeTorus(8, 6);
-    auto const spatial = engine::RefineUniformly(scene, 2, false),
-               differential = Refine(scene, 2, {});
+    auto const spatial = test::Refine(scene, 2), differential = Refine(scene, 2, {});
     EXPECT_EQ(differential.cage.faceVertices, spatial.cage.faceVertices);
     EXPECT_EQ(differential.uvs, spatial.uvs);
 }
@@ -63,7 +75,7 @@ TEST(Differential, AttributesFollow) {
 // All levels in space leave nothing to do: the mesh itself has its coordinates.
 TEST(Differential, AllLevelsInSpaceChangeNothing) {
     auto const scene = LoadBumpy();
-    auto const spatial = engine::RefineUniformly(scene, 2, false);
+    auto const spatial = test::Refine(scene, 2);
     auto const result = Refine(scene, 2, {.spatialLevels = 2});
     EXPECT_LT(test::LargestDifference(spatial.positions, result.positions), 1e-9);
 }
@@ -71,12 +83,13 @@ TEST(Differential, AllLevelsInSpaceChangeNothing) {
 /// Thin-plate energies of differential over spatial Butterfly: the mean's ratio, and the
 /// integral's.
 std::array<double, 2> CompareEnergies(engine::Scene const& scene) {
-    engine::DifferentialReport report;
-    Refine(scene, 3, {.rule = SubdivisionRule::Butterfly}, &report);
-    auto const spatial = engine::RefineUniformly(scene, 3, false, SubdivisionRule::Butterfly);
+    auto const report = RefineAndReport(scene, 3, {.rule = SubdivisionRule::Butterfly}).report;
+    engine::Job job;
+    auto const spatial = engine::RefineUniformly(
+        engine::Model::Build(scene), {.levels = 3, .rule = SubdivisionRule::Butterfly}, job);
     auto const refiner = far_ext::CreateRefiner(spatial.cage);
     auto const energy = eval::FindThinPlateEnergy(
-        eval::MeasureMeshCurvature(refiner->GetLevel(0), spatial.positions, 1.0));
+        eval::MeasureMeshCurvature(refiner->GetLevel(0), spatial.positions));
     return {report.energy.mean / energy.mean, report.energy.integral / energy.integral};
 }
 
@@ -129,28 +142,32 @@ TEST(Differential, TheFilterIsThePapers) {
 // said so.
 TEST(Differential, AreaLaplaciansAreFitted) {
     for (auto laplacian : {engine::Laplacian::Cotangent, engine::Laplacian::Mesh}) {
-        engine::DifferentialReport report;
-        auto const result = Refine(LoadBumpy(), 1, {.laplacian = laplacian}, &report);
-        EXPECT_TRUE(report.converged);
-        EXPECT_LT(report.residual, 0.5);
-        EXPECT_TRUE(test::AreFinite(result.positions));
+        auto const result = RefineAndReport(LoadBumpy(), 1, {.laplacian = laplacian});
+        EXPECT_TRUE(result.report.converged);
+        EXPECT_LT(result.report.residual, 0.5);
+        EXPECT_TRUE(test::AreFinite(result.mesh.positions));
     }
 }
 
 TEST(Differential, SizeAndTangentialShareAreWarnedOf) {
-    engine::DifferentialReport report;
-    Refine(test::MakeBipyramid(3), 2, {}, &report);
-    ASSERT_EQ(report.warnings.size(), 1u);
-    EXPECT_NE(report.warnings[0].find("times the size"), std::string::npos);
+    auto const shrunk = RefineAndReport(test::MakeBipyramid(3), 2, {});
+    ASSERT_EQ(shrunk.warnings.size(), 1u);
+    EXPECT_NE(shrunk.warnings[0].find("times the size"), std::string::npos);
     auto sheared = LoadBumpy();
     for (size_t i = 0; i < sheared.positions.size(); i += 3) sheared.positions[i] *= 40.0;
-    engine::DifferentialReport other;
-    Refine(sheared, 2, {.dirMagLevels = 1}, &other);
-    EXPECT_GT(other.tangentialShare, 0.6);
+    auto const other = RefineAndReport(sheared, 2, {.dirMagLevels = 1});
+    EXPECT_GT(other.report.tangentialShare, 0.6);
     EXPECT_NE(other.warnings.at(0).find("`dirMagLevels`"), std::string::npos);
-    engine::DifferentialReport creased;
-    Refine(test::LoadShape("catmark_cube_creases0"), 1, {}, &creased);
+    auto const creased = RefineAndReport(test::LoadShape("catmark_cube_creases0"), 1, {});
     EXPECT_NE(creased.warnings.at(0).find("creases get round"), std::string::npos);
+}
+
+TEST(Differential, StopsWhereItsHostWants) {
+    auto const model = engine::Model::Build(LoadBumpy());
+    EXPECT_TRUE(test::StopsHalfway([&](engine::Job& job) {
+        engine::RefineDifferentially(model,
+                                     {.levels = 2, .laplacian = engine::Laplacian::Cotangent}, job);
+    }));
 }
 
 // Interior valence 2, isolated vertices, triangles without area: an answer without NaN, or a named
@@ -217,7 +234,7 @@ TEST(Polylines, WhatIsReadIsWritten) {
     ASSERT_EQ(curves.size(), 2u);
     EXPECT_TRUE(curves[0].isClosed);
     EXPECT_FALSE(curves[1].isClosed);
-    engine::WritePolylines(folder / "out.obj", curves, true);
+    engine::WritePolylines(folder / "out.obj", curves, Precision::Double);
     auto const again = engine::ReadPolylines(folder / "out.obj");
     ASSERT_EQ(again.size(), 2u);
     EXPECT_EQ(again[0].points[2][2], 0.1);

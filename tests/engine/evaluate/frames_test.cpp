@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "engine/evaluate/evaluate.h"
+#include "engine/evaluate/place_table.h"
 #include "engine/io/mesh_reader.h"
 #include "engine/io/mesh_writer.h"
 #include "far_ext/topology/refiner.h"
@@ -27,16 +29,16 @@ protected:
 
     void SetUp() override {
         mesh = test::LoadShape("catmark_tent_creases0");
-        refiner = far_ext::CreateRefiner(mesh.cage);
         fs::create_directory(folder / "in");
         for (int frame = 1; frame <= kNumFrames; ++frame) WriteFrame(InputPath(frame), Bend(frame));
-        std::string text = "face,s,t\n";
         for (Index face = 0; face < mesh.cage.GetNumFaces(); ++face) {
-            text += fmt::format("{0},0.25,0.5\n{0},0,0\n{0},0.875,0.75\n{0},0.001,0.002\n", face);
+            faces.insert(faces.end(), 4, face);
+            s.insert(s.end(), {0.25, 0.0, 0.875, 0.001});
+            t.insert(t.end(), {0.5, 0.0, 0.75, 0.002});
         }
-        test::WriteText(folder / "places.csv", text);
-        places = ReadPlaces(folder / "places.csv");
     }
+
+    PlaceArrays GetPlaces() const { return {faces, s, t}; }
 
     std::string InputPath(int frame) const { return folder / fmt::format("in/walk.{}.obj", frame); }
 
@@ -49,17 +51,17 @@ protected:
     }
 
     static void WriteFrame(std::string const& path, Scene const& scene) {
-        WriteMesh(path, scene, true, nullptr);
+        WriteMesh(path, scene, Precision::Double);
     }
 
     FramesReport Evaluate(std::optional<eval::EvaluatorKind> evaluator = {},
                           std::string const& output = "out.{frame}.csv") {
         FrameOptions options;
         options.outputPattern = folder / output;
-        options.isDouble = true;
+        options.precision = Precision::Double;
         options.evaluator = evaluator;
         Job job;
-        return EvaluateFrames(mesh, *refiner, places, "places.csv",
+        return EvaluateFrames(Model::Build(mesh), GetPlaces(),
                               FindFrames(folder / "in/walk.{frame}.obj"), options, job);
     }
 
@@ -77,23 +79,24 @@ protected:
         size_t count = 0;
         for (auto const& entry : fs::directory_iterator(folder / ""))
             count += entry.path().extension() != ".csv" ? 0 : 1;
-        return count - 1;  // places.csv
+        return count;
     }
 
     test::TemporaryFolder folder;
     Scene mesh;
-    std::unique_ptr<Far::TopologyRefiner> refiner;
-    PlaceList places;
+    std::vector<Index> faces;
+    std::vector<double> s, t;
 };
 
 TEST_F(Frames, AgreeWithEvaluatingEachAlone) {
     FramesReport const report = Evaluate();
     ASSERT_EQ(report.outputs.size(), kNumFrames);
-    EXPECT_GT(report.numRows, places.faces.size() / 2);
+    EXPECT_GT(report.numRows, faces.size() / 2);
     for (int frame = 1; frame <= kNumFrames; ++frame) {
-        size_t numWithout = 0;
-        auto const expected = ReadNumbers(EvaluatePlaces(ReadMesh(InputPath(frame)), *refiner,
-                                                         places, "", false, true, numWithout));
+        Job job;
+        auto const values = EvaluateLimit(Model::Build(ReadMesh(InputPath(frame))), GetPlaces(),
+                                          Orientation::Right, job);
+        auto const expected = ReadNumbers(FormatValues(GetPlaces(), values, Precision::Double));
         auto const found = ReadNumbers(test::ReadText(folder / fmt::format("out.{}.csv", frame)));
         ASSERT_EQ(found.size(), expected.size());
         for (size_t i = 0; i < found.size(); ++i) {

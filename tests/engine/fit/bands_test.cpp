@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/fit/bands.h"
 
-#include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 #include "far_ext/topology/refiner.h"
 #include "support/errors.h"
 #include "support/fit_meshes.h"
+#include "support/listener.h"
 #include "support/meshes.h"
 #include "support/values.h"
 
@@ -19,16 +20,17 @@ using Eigen::MatrixXd;
 using test::Rows;
 using test::ToRows;
 
-eval::LimitOperator MakeOperator(engine::Scene const& scene) {
-    return eval::LimitOperator::Build(*far_ext::CreateRefiner(scene.cage));
+engine::Bands Split(engine::Scene const& scene, int count) {
+    engine::Job job;
+    return engine::SplitIntoBands(engine::Model::Build(scene), count, 0.0, job);
 }
 
 TEST(Bands, AddUpToTheMesh) {
     for (engine::Scene const& scene : test::MakeNoisyScenes()) {
         for (int count : {1, 2, 7, 40}) {
-            auto const bands = engine::SplitIntoBands(scene, MakeOperator(scene), count);
-            ASSERT_EQ(bands.size(), static_cast<size_t>(count) + 1);
-            Rows sum = Rows::Zero(scene.cage.numVertices, 3);
+            auto const [bands, remainder] = Split(scene, count);
+            ASSERT_EQ(bands.size(), static_cast<size_t>(count));
+            Rows sum = ToRows(remainder);
             for (auto const& band : bands) sum += ToRows(band);
             EXPECT_LT(test::LargestOf(sum - ToRows(scene.positions)),
                       1e-13 * test::BoxDiagonal(scene.positions));
@@ -42,53 +44,59 @@ TEST(Bands, AreThoseOfTheSeries) {
         MatrixXd const A = far_ext::LimitMatrix::Build(*far_ext::CreateRefiner(scene.cage))
                                .AsMatrix(),
                        E = MatrixXd::Identity(A.rows(), A.cols());
-        auto const bands = engine::SplitIntoBands(scene, MakeOperator(scene), 3);
+        auto const [bands, remainder] = Split(scene, 3);
         Rows power = ToRows(scene.positions);
-        for (size_t i = 0; i < 3; ++i) {
-            EXPECT_LT(test::LargestOf(ToRows(bands[i]) - A * power),
+        for (auto const& band : bands) {
+            EXPECT_LT(test::LargestOf(ToRows(band) - A * power),
                       1e-13 * test::BoxDiagonal(scene.positions));
             power = (E - A) * power;
         }
-        EXPECT_LT(test::LargestOf(ToRows(bands[3]) - power),
+        EXPECT_LT(test::LargestOf(ToRows(remainder) - power),
                   1e-13 * test::BoxDiagonal(scene.positions));
     }
 }
 
-// Q = M + (1,0,0): the constant difference is an eigenvector of D with eigenvalue 1; rho^k of it is
-// left.
-TEST(Morph, KeepsRhoToTheKOfAConstantDifference) {
-    engine::Scene const to = test::MakeTorus(9, 7);
-    engine::Scene from = to;
-    for (size_t i = 0; i < from.positions.size(); i += 3) from.positions[i] += 1.0;
-    int last = 0;
-    engine::Morph(
-        from, to, MakeOperator(to), 2, 0.8, 5, [&](int step, std::vector<double> const& Q) {
-            EXPECT_EQ(step, ++last);
-            for (size_t i = 0; i < Q.size(); ++i)
-                ASSERT_NEAR(Q[i] - to.positions[i], i % 3 == 0 ? std::pow(0.8, step) : 0.0, 1e-13);
-        });
-    EXPECT_EQ(last, 5);
+// What is kept are the first bands; what is added again are powers of the high-pass filter.
+TEST(Bands, DenoisingAndSharpeningAreSumsOfThem) {
+    engine::Job job;
+    for (engine::Scene const& scene : test::MakeNoisyScenes()) {
+        auto const model = engine::Model::Build(scene);
+        auto const [bands, remainder] = Split(scene, 4);
+        Rows const mesh = ToRows(scene.positions);
+        double const size = test::BoxDiagonal(scene.positions);
+        Rows low = ToRows(bands[0]);
+        for (int i = 1; i <= 2; ++i) low += ToRows(bands[i]);
+        EXPECT_LT(test::LargestOf(ToRows(engine::Denoise(model, {.detail = 2}, job)) - low),
+                  1e-13 * size);
+        // (E-A)^3 M is the fourth band and what remains.
+        Rows const sharp = mesh + ToRows(bands[3]) + ToRows(remainder);
+        EXPECT_LT(
+            test::LargestOf(ToRows(engine::Sharpen(model, {.first = 3, .last = 3}, job)) - sharp),
+            1e-13 * size);
+    }
 }
 
-TEST(Morph, RefusesAnotherTopologyAndNamesTheFace) {
-    engine::Scene const to = test::MakeTorus(9, 7);
-    auto const refusal = [&](engine::Scene const& from) {
-        return test::RefusalOf(
-            [&] { engine::Morph(from, to, MakeOperator(to), 2, 0.8, 1, [](int, auto const&) {}); });
-    };
-    EXPECT_NE(refusal(test::MakeTorus(7, 9)).find("face 0 "), std::string::npos);
-    EXPECT_NE(refusal(test::MakeCube()).find("8 and 63 vertices"), std::string::npos);
-    engine::Scene turned = to;
-    std::swap(turned.cage.faceVertices[21], turned.cage.faceVertices[22]);
-    EXPECT_NE(refusal(turned).find("face 5 "), std::string::npos);
-    engine::Scene broken = to;
-    broken.positions[30] = NAN;
-    EXPECT_NE(refusal(broken).find("vertex 10 "), std::string::npos);
+TEST(Bands, AreSharpenedInOrder) {
+    engine::Job job;
+    auto const model = engine::Model::Build(test::MakeCube());
+    for (auto const& [first, last] : {std::pair{3, 2}, {0, 2}, {-1, -1}}) {
+        EXPECT_EQ(
+            test::CodeOf([&] { engine::Sharpen(model, {.first = first, .last = last}, job); }),
+            ErrorCode::BadOption);
+    }
+}
+
+TEST(Bands, FiltersStopWhereTheirHostWants) {
+    auto const model = engine::Model::Build(test::MakeTorus(9, 7));
+    using engine::Job;
+    EXPECT_TRUE(test::StopsHalfway([&](Job& job) { engine::SplitIntoBands(model, 9, 0.0, job); }));
+    EXPECT_TRUE(test::StopsHalfway([&](Job& job) { engine::Denoise(model, {.steps = 4}, job); }));
+    EXPECT_TRUE(test::StopsHalfway([&](Job& job) { engine::Sharpen(model, {.steps = 4}, job); }));
 }
 
 TEST(MeshExtent, KnowsTheVolumeOfClosedMeshes) {
     auto const measure = [](engine::Scene const& scene) {
-        return engine::MeasureExtent(scene, far_ext::CreateRefiner(scene.cage)->GetLevel(0));
+        return engine::MeasureExtent(engine::Model::Build(scene), scene.positions);
     };
     EXPECT_NEAR(measure(test::MakeCube()).volume.value(), 8.0, 1e-14);
     EXPECT_FALSE(measure(test::MakeGridWithHole(5, 4)).volume.has_value());

@@ -8,14 +8,17 @@
 #include "eval/surface/vertex_limits.h"
 #include "far_ext/topology/refiner.h"
 #include "support/fit_meshes.h"
+#include "support/listener.h"
 #include "support/meshes.h"
 #include "support/values.h"
 
 namespace limn {
 namespace {
 
-using engine::FitOptions;
-using engine::FitToLimit;
+engine::FitResult FitToLimit(engine::Scene const& scene, engine::FitOptions const& options) {
+    engine::Job job;
+    return engine::FitToLimit(engine::Model::Build(scene), options, job);
+}
 
 /// Largest distance of a mesh's plain limit from the points of `data`, over their diagonal, by deep
 /// refinement.
@@ -126,6 +129,13 @@ TEST(Fit, ASingularComponentOffTheRangeDoesNotConvergeAndKeepsItsDefect) {
     EXPECT_FALSE(result.HasConverged());
     EXPECT_EQ(result.lambdaMin, 0.0);
     EXPECT_NEAR(result.certificate.max, result.report.residual, 1e-7);
+}
+
+TEST(Fit, StopsWhereItsHostWants) {
+    auto const model = engine::Model::Build(test::MakeTorus(24, 18));
+    EXPECT_TRUE(test::StopsHalfway([&](engine::Job& job) {
+        engine::FitToLimit(model, {.tolerance = 1e-10, .alpha = 0.5}, job);
+    }));
 }
 
 class FitOf : public testing::TestWithParam<char const*> {};

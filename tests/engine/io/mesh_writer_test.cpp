@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 
 #include "engine/io/mesh_reader.h"
-#include "engine/scene/refine.h"
 #include "support/files.h"
+#include "support/fit_meshes.h"
 #include "support/meshes.h"
 #include "support/readers.h"
 
@@ -20,10 +20,9 @@ namespace {
 using engine::Scene;
 
 /// Writes a scene and reads it back.
-Scene RoundTrip(Scene const& scene, std::string const& name, bool isDouble,
-                std::vector<std::string>* warnings = nullptr) {
+Scene RoundTrip(Scene const& scene, std::string const& name, Precision precision) {
     test::TemporaryFolder const folder;
-    engine::WriteMesh(folder / name, scene, isDouble, warnings);
+    engine::WriteMesh(folder / name, scene, precision);
     EXPECT_EQ(folder.List(), (std::vector<std::string>{name}));
     return engine::ReadMesh(folder / name);
 }
@@ -55,7 +54,8 @@ void ExpectSameCornerUVs(Scene const& a, Scene const& b) {
 
 /// Numbers no short decimal hits: random mantissas over many magnitudes, and the edges of the
 /// range.
-Scene MakeAwkward(bool isDouble) {
+Scene MakeAwkward(Precision precision) {
+    bool const isDouble = precision == Precision::Double;
     Scene scene = test::MakeTorus(8, 6);
     std::mt19937_64 random(7);
     auto const number = [&] {
@@ -79,13 +79,14 @@ Scene MakeAwkward(bool isDouble) {
     return scene;
 }
 
-class WrittenMesh : public testing::TestWithParam<std::tuple<std::string, bool>> {};
+class WrittenMesh : public testing::TestWithParam<std::tuple<std::string, Precision>> {};
 
 TEST_P(WrittenMesh, ReadsBackAsTheSameNumbers) {
-    auto const& [ending, isDouble] = GetParam();
-    Scene const scene = MakeAwkward(isDouble);
-    Scene back = RoundTrip(scene, "mesh" + ending, isDouble);
-    if (!isDouble) {  // digits of a float name a double beside it; as floats the two are the same
+    auto const& [ending, precision] = GetParam();
+    Scene const scene = MakeAwkward(precision);
+    Scene back = RoundTrip(scene, "mesh" + ending, precision);
+    if (precision == Precision::Float) {  // digits of a float name a double beside it; as floats
+                                          // the two are the same
         back.positions = AsFloats(back.positions);
         back.uvs = AsFloats(back.uvs);
     }
@@ -96,29 +97,32 @@ TEST_P(WrittenMesh, ReadsBackAsTheSameNumbers) {
 }
 
 TEST_P(WrittenMesh, IsTheSameInEveryLocale) {
-    auto const& [ending, isDouble] = GetParam();
+    auto const& [ending, precision] = GetParam();
     test::TemporaryFolder const folder;
-    Scene const scene = MakeAwkward(isDouble);
-    engine::WriteMesh(folder / "a" + ending, scene, isDouble, nullptr);
+    Scene const scene = MakeAwkward(precision);
+    engine::WriteMesh(folder / "a" + ending, scene, precision);
     {
         test::CommaLocale const commas;
-        engine::WriteMesh(folder / "b" + ending, scene, isDouble, nullptr);
+        engine::WriteMesh(folder / "b" + ending, scene, precision);
     }
     EXPECT_EQ(test::ReadText(folder / "a" + ending), test::ReadText(folder / "b" + ending));
 }
 
 INSTANTIATE_TEST_SUITE_P(Format, WrittenMesh,
-                         testing::Combine(testing::Values(".obj", ".ply"), testing::Bool()),
+                         testing::Combine(testing::Values(".obj", ".ply"),
+                                          testing::Values(Precision::Float, Precision::Double)),
                          [](auto const& instance) {
                              return std::get<0>(instance.param).substr(1) +
-                                    (std::get<1>(instance.param) ? "Double" : "Float");
+                                    (std::get<1>(instance.param) == Precision::Double ? "Double"
+                                                                                      : "Float");
                          });
 
 TEST(MeshWriter, FloatOutputRoundsToTheNearestFloat) {
     Scene scene = test::MakeCube();
     scene.positions[0] = 0.1;
     for (std::string const name : {"a.obj", "a.ply"}) {
-        EXPECT_EQ(static_cast<float>(RoundTrip(scene, name, false).positions[0]), 0.1f) << name;
+        EXPECT_EQ(static_cast<float>(RoundTrip(scene, name, Precision::Float).positions[0]), 0.1f)
+            << name;
     }
 }
 
@@ -127,7 +131,7 @@ TEST(MeshWriter, NumberBeyondFloatIsRefusedRatherThanWrittenAsInfinity) {
     scene.positions[0] = 1e300;
     for (std::string const name : {"a.obj", "a.ply"}) {
         test::TemporaryFolder const folder;
-        EXPECT_THROW(engine::WriteMesh(folder / name, scene, false, nullptr), Error) << name;
+        EXPECT_THROW(engine::WriteMesh(folder / name, scene, Precision::Float), Error) << name;
         EXPECT_TRUE(folder.List().empty()) << name;
     }
 }
@@ -140,7 +144,7 @@ TEST(MeshWriter, ObjKeepsTags) {
     cage.cornerVertices = {7, 3};
     cage.cornerSharpness = {1.0f / 3, 4.0f};
     cage.holes = {2, 9};
-    Scene const back = RoundTrip(scene, "a.obj", false);
+    Scene const back = RoundTrip(scene, "a.obj", Precision::Float);
     EXPECT_EQ(back.cage.creaseVertexPairs, cage.creaseVertexPairs);
     EXPECT_EQ(back.cage.creaseSharpness, cage.creaseSharpness);
     EXPECT_EQ(back.cage.cornerVertices, cage.cornerVertices);
@@ -163,7 +167,7 @@ TEST(MeshWriter, ObjKeepsEverySubdivisionRule) {
                                                   : Sdc::Options::CREASE_UNIFORM);
                 options.SetTriangleSubdivision(isOther ? Sdc::Options::TRI_SUB_SMOOTH
                                                        : Sdc::Options::TRI_SUB_CATMARK);
-                auto const back = RoundTrip(scene, "a.obj", false).cage.options;
+                auto const back = RoundTrip(scene, "a.obj", Precision::Float).cage.options;
                 EXPECT_EQ(back.GetVtxBoundaryInterpolation(), boundary);
                 EXPECT_EQ(back.GetFVarLinearInterpolation(), fvar);
                 EXPECT_EQ(back.GetCreasingMethod(), options.GetCreasingMethod());
@@ -176,7 +180,7 @@ TEST(MeshWriter, ObjKeepsEverySubdivisionRule) {
 TEST(MeshWriter, EndingsMayBeCapital) {
     Scene const torus = test::MakeTorus(6, 4);
     for (char const* name : {"a.OBJ", "a.Obj", "a.PLY", "a.Ply"}) {
-        Scene const back = RoundTrip(torus, name, true);
+        Scene const back = RoundTrip(torus, name, Precision::Double);
         ExpectSameBits(back.positions, torus.positions);
         ExpectSameCornerUVs(back, torus);
     }
@@ -185,7 +189,7 @@ TEST(MeshWriter, EndingsMayBeCapital) {
 TEST(MeshWriter, ObjKeepsSeveralNamesOfAGroup) {
     Scene scene = test::MakeCube();
     scene.groups[1] = {{"left arm", "arm"}, {0, 0, 1, -1, 0, 1}};
-    Scene const back = RoundTrip(scene, "a.obj", false);
+    Scene const back = RoundTrip(scene, "a.obj", Precision::Float);
     EXPECT_EQ(engine::SelectGroups(back, {"arm"}), (std::vector<char>{1, 1, 1, 0, 1, 1}));
     EXPECT_EQ(engine::SelectGroups(back, {"left"}), (std::vector<char>{1, 1, 0, 0, 1, 0}));
 }
@@ -194,7 +198,7 @@ TEST(MeshWriter, ObjKeepsGroups) {
     Scene scene = test::MakeCube();
     scene.groups[0] = {{"red", "dark blue"}, {0, 0, 1, -1, 0, 1}};
     scene.groups[2] = {{"body"}, {-1, 0, 0, 0, 0, 0}};
-    Scene const back = RoundTrip(scene, "a.obj", false);
+    Scene const back = RoundTrip(scene, "a.obj", Precision::Float);
     for (size_t kind = 0; kind < 3; ++kind) {
         EXPECT_EQ(back.groups[kind].names, scene.groups[kind].names) << kind;
         EXPECT_EQ(back.groups[kind].faceGroup, scene.groups[kind].faceGroup) << kind;
@@ -203,7 +207,7 @@ TEST(MeshWriter, ObjKeepsGroups) {
 
 TEST(MeshWriter, ObjKeepsUVSharingAndOrder) {
     Scene const scene = test::LoadShape("catmark_cube");
-    Scene const back = RoundTrip(scene, "a.obj", true);
+    Scene const back = RoundTrip(scene, "a.obj", Precision::Double);
     EXPECT_EQ(back.uvs, scene.uvs);
     EXPECT_EQ(back.cage.fvarChannels.at(0).valueIndices,
               scene.cage.fvarChannels.at(0).valueIndices);
@@ -214,7 +218,7 @@ TEST(MeshWriter, PlyKeepsPrimvars) {
     scene.primvars = {{"color", 3, {}}, {"quality", 1, {}}};
     for (int i = 0; i < 24; ++i) scene.primvars[0].values.push_back(static_cast<float>(i) / 7);
     for (int i = 0; i < 8; ++i) scene.primvars[1].values.push_back(static_cast<float>(-i) * 1e9f);
-    Scene const back = RoundTrip(scene, "a.ply", false);
+    Scene const back = RoundTrip(scene, "a.ply", Precision::Float);
     ASSERT_EQ(back.primvars.size(), 2u);
     for (size_t i = 0; i < 2; ++i) {
         EXPECT_EQ(back.primvars[i].name, scene.primvars[i].name);
@@ -227,25 +231,24 @@ TEST(MeshWriter, WhatAFormatCannotHoldIsSaid) {
     Scene scene = test::MakeCube();
     scene.cage.creaseVertexPairs = {0, 1};
     scene.cage.creaseSharpness = {2};
-    std::vector<std::string> warnings;
-    RoundTrip(scene, "a.ply", false, &warnings);
-    ASSERT_EQ(warnings.size(), 1u);
-    EXPECT_NE(warnings[0].find("PLY holds no creases"), std::string::npos) << warnings[0];
-
-    warnings.clear();
-    RoundTrip(scene, "a.obj", false, &warnings);
-    EXPECT_TRUE(warnings.empty());
+    test::TemporaryFolder const folder;
+    auto const write = [&](char const* name) {
+        return engine::WriteMesh(folder / name, scene, Precision::Float);
+    };
+    EXPECT_EQ(write("a.ply"), std::vector<std::string>{
+                                  folder / "a.ply" +
+                                  ": PLY holds no creases, corners or holes; they are left out"});
+    EXPECT_TRUE(write("a.obj").empty());
     scene.primvars = {{"quality", 1, std::vector<float>(8)}};
-    RoundTrip(scene, "a.obj", false, &warnings);
-    ASSERT_EQ(warnings.size(), 1u);
-    EXPECT_NE(warnings[0].find("OBJ holds no primvars"), std::string::npos) << warnings[0];
+    EXPECT_EQ(write("a.obj"), std::vector<std::string>{
+                                  folder / "a.obj" + ": OBJ holds no primvars; they are left out"});
 }
 
 TEST(MeshWriter, OtherEndingsAreRefusedAndLeaveNothing) {
     test::TemporaryFolder const folder;
     for (std::string const name : {"a.stl", "a", "obj", "a.obj.txt"}) {
         auto const error = test::CatchError(
-            [&] { engine::WriteMesh(folder / name, test::MakeCube(), false, nullptr); });
+            [&] { engine::WriteMesh(folder / name, test::MakeCube(), Precision::Float); });
         ASSERT_TRUE(error) << name;
         EXPECT_EQ(error->GetCode(), ErrorCode::BadOption);
         EXPECT_NE(std::string(error->what()).find(".obj or .ply"), std::string::npos);
@@ -256,15 +259,15 @@ TEST(MeshWriter, OtherEndingsAreRefusedAndLeaveNothing) {
 TEST(MeshWriter, ReplacesAFileWhole) {
     test::TemporaryFolder const folder;
     std::string const path = folder.Write("a.obj", std::string(100000, 'x'));
-    engine::WriteMesh(path, test::MakeCube(), false, nullptr);
+    engine::WriteMesh(path, test::MakeCube(), Precision::Float);
     EXPECT_EQ(engine::ReadMesh(path).cage.numVertices, 8);
     EXPECT_EQ(folder.List(), (std::vector<std::string>{"a.obj"}));
 }
 
 TEST(MeshWriter, RefinedMeshReadsBackWithItsTags) {
     Scene scene = test::LoadShape("catmark_cube_creases0");
-    Scene const fine = engine::RefineUniformly(scene, 1, false);
-    Scene const back = RoundTrip(fine, "a.obj", true);
+    Scene const fine = test::Refine(scene, 1);
+    Scene const back = RoundTrip(fine, "a.obj", Precision::Double);
     ExpectSameBits(fine.positions, back.positions);
     ExpectSameCornerUVs(fine, back);
     EXPECT_EQ(back.cage.creaseVertexPairs, fine.cage.creaseVertexPairs);
@@ -279,13 +282,13 @@ TEST(MeshWriter, NormalsAreThoseOfTheVertices) {
         Scene const plain = scene;
         for (Index vertex = 0; vertex < scene.cage.numVertices; ++vertex)
             scene.normals.insert(scene.normals.end(), {0.25 * vertex, 0.5, -1.0});
-        std::string const text = engine::FormatMesh("a.obj", scene, true, nullptr);
+        std::string const text = engine::FormatMesh("a.obj", scene, Precision::Double).bytes;
         std::string const first = std::to_string(scene.cage.faceVertices[0] + 1);
         std::string const uv =
             hasUVs ? std::to_string(scene.cage.fvarChannels[0].valueIndices[0] + 1) : "";
         EXPECT_NE(text.find("\nf " + first + "/" + uv + "/" + first + " "), std::string::npos);
         EXPECT_NE(text.find("\nvn 0.25 0.5 -1\n"), std::string::npos);
-        Scene const read = RoundTrip(scene, "a.obj", true);
+        Scene const read = RoundTrip(scene, "a.obj", Precision::Double);
         EXPECT_EQ(read.cage.faceVertices, plain.cage.faceVertices);
         ExpectSameBits(read.positions, plain.positions);
         if (hasUVs) ExpectSameCornerUVs(read, plain);

@@ -8,6 +8,7 @@
 
 #include "far_ext/topology/refiner.h"
 #include "support/fit_meshes.h"
+#include "support/listener.h"
 #include "support/meshes.h"
 
 namespace limn {
@@ -17,9 +18,9 @@ using engine::MeasuredSurface;
 using std::numbers::pi;
 
 engine::Measurement MeasureScene(engine::Scene const& scene, MeasuredSurface surface,
-                                 double orientation = 1.0) {
-    auto const refiner = far_ext::CreateRefiner(scene.cage);
-    return engine::Measure(scene, *refiner, surface, orientation);
+                                 Orientation orientation = Orientation::Right) {
+    engine::Job job;
+    return engine::Measure(engine::Model::Build(scene), surface, orientation, job);
 }
 
 // A box of 2 x 2 x 2 under the bilinear scheme, or as a mesh: 24, 8, Euler's 2.
@@ -30,7 +31,7 @@ TEST(Measure, ACubeHasItsAreaAndVolume) {
     ASSERT_TRUE(mesh.volume);
     EXPECT_NEAR(*mesh.volume, 8.0, 1e-12);
     EXPECT_EQ(mesh.eulerCharacteristic, 2);
-    EXPECT_NEAR(*MeasureScene(scene, MeasuredSurface::Mesh, -1.0).volume, -8.0, 1e-12);
+    EXPECT_NEAR(*MeasureScene(scene, MeasuredSurface::Mesh, Orientation::Left).volume, -8.0, 1e-12);
     scene.cage.scheme = Sdc::SCHEME_BILINEAR;
     auto const limit = MeasureScene(scene, MeasuredSurface::Limit);
     EXPECT_NEAR(limit.area, 24.0, 1e-12);
@@ -87,19 +88,45 @@ TEST(Measure, ComponentsAreToldApart) {
 }
 
 TEST(Measure, VerticesGetTheirCurvature) {
-    auto const scene = test::MakeTriangleTorus(12, 8);
-    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    auto const model = engine::Model::Build(test::MakeTriangleTorus(12, 8));
+    engine::Job job;
     for (MeasuredSurface surface : {MeasuredSurface::Limit, MeasuredSurface::Mesh}) {
-        auto const curved = engine::AddVertexCurvature(scene, *refiner, surface, 1.0);
-        ASSERT_EQ(curved.primvars.size(), 4u);
-        ASSERT_EQ(curved.primvars[0].values.size(), 96u);
-        for (size_t v = 0; v < curved.primvars[0].values.size(); ++v) {
-            float const k1 = curved.primvars[2].values[v], k2 = curved.primvars[3].values[v];
-            EXPECT_NEAR(curved.primvars[0].values[v], 0.5f * (k1 + k2),
-                        1e-5f * (1.0f + std::abs(k1) + std::abs(k2)));
-            EXPECT_NEAR(curved.primvars[1].values[v], k1 * k2, 1e-4f * (1.0f + std::abs(k1 * k2)));
+        auto const found = engine::FindVertexCurvature(model, surface, Orientation::Right, job);
+        ASSERT_EQ(found.k1.size(), 96u);
+        for (size_t v = 0; v < found.k1.size(); ++v) {
+            EXPECT_EQ(found.mean[v], 0.5 * (found.k1[v] + found.k2[v]));
+            EXPECT_EQ(found.gaussian[v], found.k1[v] * found.k2[v]);
+            EXPECT_GE(found.k1[v], found.k2[v]);
         }
     }
+}
+
+TEST(Measure, CurvatureBecomesPrimvars) {
+    auto const model = engine::Model::Build(test::MakeCube());
+    engine::VertexCurvature const curvature{{1, 2, 3, 4, 5, 6, 7, 8},
+                                            std::vector<double>(8, 0.1),
+                                            std::vector<double>(8, 0.2),
+                                            std::vector<double>(8, 0.3)};
+    auto const curved = engine::AddVertexCurvature(model, curvature);
+    EXPECT_EQ(curved.positions, model.GetPositions());
+    ASSERT_EQ(curved.primvars.size(), 4u);
+    char const* const names[] = {"mean", "gaussian", "k1", "k2"};
+    for (size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(curved.primvars[i].name, names[i]);
+        EXPECT_EQ(curved.primvars[i].numChannels, 1);
+    }
+    EXPECT_EQ(curved.primvars[0].values, (std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8}));
+    EXPECT_EQ(curved.primvars[3].values, std::vector<float>(8, 0.3f));
+}
+
+TEST(Measure, StopsWhereItsHostWants) {
+    auto const model = engine::Model::Build(test::MakeTorus(16, 12));
+    EXPECT_TRUE(test::StopsHalfway([&](engine::Job& job) {
+        engine::Measure(model, MeasuredSurface::Limit, Orientation::Right, job);
+    }));
+    EXPECT_TRUE(test::StopsHalfway([&](engine::Job& job) {
+        engine::FindVertexCurvature(model, MeasuredSurface::Limit, Orientation::Right, job);
+    }));
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include "eval/surface/surface_place.h"
 #include "eval/surface/surface_sample.h"
 #include "far_ext/topology/refiner.h"
+#include "support/errors.h"
+#include "support/listener.h"
 #include "support/meshes.h"
 
 namespace limn {
@@ -86,11 +88,12 @@ double AtCorner(engine::SurfaceNoise::Sampler& noise, eval::LimitSurface const& 
 // least and largest value named are met.
 TEST_P(SurfaceNoiseOf, FacesAgreeAtTheirCorners) {
     engine::Scene const scene = test::LoadShape(GetParam());
-    auto const refiner = far_ext::CreateRefiner(scene.cage);
-    eval::LimitSurface const surface(*refiner);
-    auto const level = refiner->GetLevel(0);
+    auto const model = engine::Model::Build(scene);
+    eval::LimitSurface const surface(model.GetRefiner());
+    auto const& level = model.GetLevel();
+    engine::Job job;
     for (int octaves : {1, 2, 4}) {
-        engine::SurfaceNoise const noise(scene, {.octaves = octaves, .seed = 3});
+        engine::SurfaceNoise const noise(model, {.octaves = octaves, .seed = 3}, job);
         engine::SurfaceNoise::Sampler sampler(noise);
         EXPECT_LT(noise.GetLow(), noise.GetHigh());
         for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
@@ -118,12 +121,13 @@ INSTANTIATE_TEST_SUITE_P(Cages, OneOctaveOf,
 // finds.
 TEST_P(OneOctaveOf, PassesThroughTheNoise) {
     engine::Scene const scene = test::LoadShape(GetParam());
-    auto const refiner = far_ext::CreateRefiner(scene.cage);
-    eval::LimitSurface const surface(*refiner);
+    auto const model = engine::Model::Build(scene);
+    eval::LimitSurface const surface(model.GetRefiner());
     eval::FaceTree tree(surface, scene.positions, 3);
-    engine::SurfaceNoise const noise(scene, {.octaves = 1, .frequency = 1.3, .seed = 9});
+    engine::Job job;
+    engine::SurfaceNoise const noise(model, {.octaves = 1, .frequency = 1.3, .seed = 9}, job);
     engine::SurfaceNoise::Sampler sampler(noise);
-    auto const level = refiner->GetLevel(0);
+    auto const& level = model.GetLevel();
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
         Index const face = level.GetVertexFaces(vertex)[0];
         int const corner = level.GetVertexFaceLocalIndices(vertex)[0];
@@ -136,6 +140,25 @@ TEST_P(OneOctaveOf, PassesThroughTheNoise) {
                     1e-7)
             << vertex;
     }
+}
+
+TEST(SurfaceNoise, WhatIsNoFrequencyOrNumberOfOctavesIsRefused) {
+    auto const model = engine::Model::Build(test::MakeCube());
+    engine::Job job;
+    auto const code = [&](engine::NoiseOptions const& options) {
+        return test::CodeOf([&] { engine::SurfaceNoise(model, options, job); });
+    };
+    EXPECT_FALSE(code({.octaves = 1, .frequency = 2.0}));
+    for (int octaves : {-1, 0, 11})
+        EXPECT_EQ(code({.octaves = octaves}), ErrorCode::BadOption) << octaves;
+    for (double frequency : {-1.0, 0.0, double(NAN), double(INFINITY)})
+        EXPECT_EQ(code({.frequency = frequency}), ErrorCode::BadOption) << frequency;
+}
+
+TEST(SurfaceNoise, StopsWhereItsHostWants) {
+    auto const model = engine::Model::Build(test::MakeTorus(9, 7));
+    EXPECT_TRUE(test::StopsHalfway(
+        [&](engine::Job& job) { engine::SurfaceNoise(model, {.octaves = 3}, job); }));
 }
 
 }  // namespace

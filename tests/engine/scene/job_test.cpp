@@ -7,11 +7,14 @@
 
 #include <gtest/gtest.h>
 
+#include "support/listener.h"
+
 namespace limn {
 namespace {
 
 using engine::Job;
 using engine::Progress;
+using test::Listener;
 
 /// Runs `work` on several threads at once and waits for all.
 template <class Work>
@@ -19,26 +22,6 @@ void OnThreads(int numThreads, Work work) {
     std::vector<std::jthread> threads;
     for (int i = 0; i < numThreads; ++i) threads.emplace_back([&work, i] { work(i); });
 }
-
-/// A host that keeps what it hears, and notices if two threads tell it something at once.
-struct Listener {
-    std::vector<Progress> progress;
-    std::vector<std::string> warnings;
-    std::atomic<int> numHearing{0};
-    bool isAlone = true;
-
-    engine::JobHost MakeHost() {
-        return {.onProgress = [this](Progress const& p) { Hear(progress, p); },
-                .onWarning = [this](std::string const& text) { Hear(warnings, text); }};
-    }
-
-    template <class T>
-    void Hear(std::vector<T>& all, T const& told) {
-        if (++numHearing != 1) isAlone = false;
-        all.push_back(told);
-        --numHearing;
-    }
-};
 
 TEST(Job, WithoutAHostKeepsWarningsAndNeverStops) {
     Job job;

@@ -16,7 +16,7 @@ using engine::MeshInfo;
 using engine::Scene;
 
 MeshInfo Describe(Scene const& scene) {
-    return engine::DescribeMesh(scene, far_ext::CreateRefiner(scene.cage)->GetLevel(0));
+    return engine::DescribeMesh(engine::Model::Build(scene));
 }
 
 engine::Defect const* FindDefect(MeshInfo const& info, std::string const& kind) {
@@ -55,7 +55,7 @@ void ExpectFacts(MeshInfo const& info, Facts const& facts) {
     EXPECT_EQ(info.faces, facts.faces);
     EXPECT_EQ(info.components, facts.components);
     EXPECT_EQ(info.boundaryLoops, facts.boundaryLoops);
-    EXPECT_EQ(info.genus, facts.genus);
+    EXPECT_EQ(info.genus.value_or(-1), facts.genus);
     EXPECT_EQ(info.minValence, facts.minValence);
     EXPECT_EQ(info.maxValence, facts.maxValence);
     EXPECT_EQ(info.uv.present, facts.hasUVs);
@@ -289,7 +289,7 @@ TEST(MeshInfo, BandHasTwoRimsAndAMoebiusBandOne) {
     EXPECT_EQ(band.genus, 0);  // chi = 0 = 2 - 2 loops
     EXPECT_EQ(CountDefects(band, "not_orientable"), 0u);
     EXPECT_EQ(moebius.boundaryLoops, 1);
-    EXPECT_EQ(moebius.genus, -1);
+    EXPECT_FALSE(moebius.genus);
     EXPECT_EQ(CountDefects(moebius, "not_orientable"), 1u);
     EXPECT_EQ(CountDefects(moebius, "winding"), 0u);
 }
@@ -313,7 +313,7 @@ TEST(MeshInfo, FaceWoundTheOtherWayIsADefectThatTurningCures) {
 TEST(MeshInfo, EdgeOfThreeFacesIsNotManifold) {
     MeshInfo const info = Describe(test::LoadData("malformed/nonmanifold_edge.obj"));
     EXPECT_EQ(CountDefects(info, "non_manifold_edge"), 1u);
-    EXPECT_EQ(info.genus, -1);
+    EXPECT_FALSE(info.genus);
     auto const* const defect = FindDefect(info, "non_manifold_edge");
     EXPECT_GT(defect->line, 0u);
     EXPECT_NE(defect->message.find("edge 3 5 with 3"), std::string::npos) << defect->message;
@@ -325,7 +325,7 @@ TEST(MeshInfo, PointWhereTwoSurfacesTouchIsNotManifold) {
         test::MakeScene({0, 0, 0, 1, 0, 0, 1, 1, 0, -1, 0, 0, -1, -1, 0}, {{0, 1, 2}, {0, 3, 4}}));
     EXPECT_EQ(CountDefects(info, "non_manifold_vertex"), 1u);
     EXPECT_EQ(FindDefect(info, "non_manifold_vertex")->element, 0);
-    EXPECT_EQ(info.genus, -1);
+    EXPECT_FALSE(info.genus);
 }
 
 TEST(MeshInfo, TablesCountNonManifoldPlaces) {

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "support/errors.h"
+#include "support/fit_meshes.h"
+#include "support/listener.h"
 #include "support/meshes.h"
 #include "support/values.h"
 
@@ -46,7 +48,7 @@ struct Baseline {
         engine::Scene scene = test::LoadShape(file.substr(0, file.rfind("_level")));
         if (!scene.hasBoundaryTag)
             scene.cage.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
-        ours = engine::RefineUniformly(scene, level + 1, false);
+        ours = test::Refine(scene, level + 1);
     }
     double FindDistance() const {
         auto const a = PointsOf(ours), b = PointsOf(mesh);
@@ -87,10 +89,9 @@ TEST(Refine, HierarchicalEditsHaveNoEffect) {
 
 // V' = V + E + F, E' = 2 E + 4 F on quads: a cube (8, 12, 6) becomes 26, then 98 vertices.
 TEST(Refine, CountsFollowTheSplit) {
-    EXPECT_EQ(engine::RefineUniformly(test::MakeCube(), 1, false).cage.numVertices, 26);
-    EXPECT_EQ(engine::RefineUniformly(test::MakeCube(), 2, false).cage.numVertices, 98);
-    EXPECT_EQ(engine::RefineUniformly(test::MakeCube(), 0, false).positions,
-              test::MakeCube().positions);
+    EXPECT_EQ(test::Refine(test::MakeCube(), 1).cage.numVertices, 26);
+    EXPECT_EQ(test::Refine(test::MakeCube(), 2).cage.numVertices, 98);
+    EXPECT_EQ(test::Refine(test::MakeCube(), 0).positions, test::MakeCube().positions);
 }
 
 // Refining once twice is refining twice once, up to the order of vertices: tags, UVs and positions
@@ -99,9 +100,8 @@ TEST(Refine, LevelsCompose) {
     for (char const* name :
          {"catmark_cubes_semisharp", "catmark_dart_edgeonly", "catmark_hole_test3"}) {
         auto const scene = test::LoadShape(name);
-        auto const once = engine::RefineUniformly(scene, 2, false);
-        auto const twice =
-            engine::RefineUniformly(engine::RefineUniformly(scene, 1, false), 1, false);
+        auto const once = test::Refine(scene, 2);
+        auto const twice = test::Refine(test::Refine(scene, 1), 1);
         ASSERT_EQ(once.cage.numVertices, twice.cage.numVertices) << name;
         EXPECT_LT(FarthestFrom(PointsOf(once), PointsOf(twice)), 1e-7) << name;
         EXPECT_EQ(once.uvs.size(), twice.uvs.size());
@@ -117,15 +117,23 @@ TEST(Refine, LevelsCompose) {
 // Limit points do not move when their cage is refined.
 TEST(Refine, TheLimitStaysWhereItIs) {
     auto const scene = test::LoadShape("catmark_gregory_test6");
-    auto const coarse = engine::RefineUniformly(scene, 1, true),
-               fine = engine::RefineUniformly(scene, 2, true);
+    engine::Job job;
+    auto const model = engine::Model::Build(scene);
+    auto const coarse = engine::RefineUniformly(model, {.levels = 1, .toLimit = true}, job),
+               fine = engine::RefineUniformly(model, {.levels = 2, .toLimit = true}, job);
     for (Index v = 0; v < 3 * coarse.cage.numVertices; ++v)
         EXPECT_NEAR(coarse.positions[v], fine.positions[v], 1e-7);
 }
 
 TEST(Refine, TooManyLevelsAreRefused) {
-    EXPECT_EQ(test::CodeOf([] { engine::RefineUniformly(test::MakeCube(), 11, false); }),
-              ErrorCode::BadOption);
+    EXPECT_EQ(test::CodeOf([] { test::Refine(test::MakeCube(), 11); }), ErrorCode::BadOption);
+}
+
+TEST(Refine, StopsWhereItsHostWants) {
+    auto const model = engine::Model::Build(test::MakeTorus(9, 7));
+    EXPECT_TRUE(test::StopsHalfway([&](engine::Job& job) {
+        engine::RefineUniformly(model, {.levels = 3, .toLimit = true}, job);
+    }));
 }
 
 }  // namespace

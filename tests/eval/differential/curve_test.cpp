@@ -36,9 +36,8 @@ double RadiusOf(Curve const& curve) {
 TEST(Curve, PolygonsShrinkByAKnownFactor) {
     for (auto const& [n, tolerance] : {std::pair{4, 3e-4}, {6, 3e-5}, {8, 2e-5}, {16, 1e-5}}) {
         Curve spatial = MakePolygon(n);
-        eval::CurveReport report;
-        Curve const differential =
-            eval::RefineCurveDifferentially(spatial, CurveRule::CubicBSpline, 6, &report);
+        auto const [differential, report] =
+            eval::RefineCurveDifferentially(spatial, CurveRule::CubicBSpline, 6);
         for (int level = 0; level < 6; ++level)
             spatial = eval::SubdivideCurve(spatial, CurveRule::CubicBSpline);
         double const t = 2.0 * std::acos(-1.0) / n;
@@ -56,7 +55,7 @@ TEST(Curve, ParabolasAreReproduced) {
     for (CurveRule rule : {CurveRule::CubicBSpline, CurveRule::FourPoint}) {
         Curve curve;
         for (int i = 0; i <= 5; ++i) curve.points.push_back({1.0 * i, 1.0 * i * i, 0.0, 0.0});
-        Curve const fine = eval::RefineCurveDifferentially(curve, rule, 3);
+        Curve const fine = eval::RefineCurveDifferentially(curve, rule, 3).curve;
         ASSERT_EQ(fine.points.size(), 41u);
         for (size_t i = 0; i < fine.points.size(); ++i) {
             double const x = static_cast<double>(i) / 8.0;
@@ -82,7 +81,8 @@ TEST(Curve, FourPointInterpolates) {
 
 TEST(Curve, TwoPointsStayALine) {
     Curve const fine = eval::RefineCurveDifferentially({{{0, 0, 0, 0}, {4, 0, 0, 0}}, false},
-                                                       CurveRule::FourPoint, 2);
+                                                       CurveRule::FourPoint, 2)
+                           .curve;
     ASSERT_EQ(fine.points.size(), 5u);
     for (size_t i = 0; i < 5; ++i) EXPECT_NEAR(fine.points[i][0], static_cast<double>(i), 1e-14);
 }

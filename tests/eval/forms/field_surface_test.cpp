@@ -32,7 +32,7 @@ void ForEachPlace(engine::Scene const& scene, eval::FieldSurface const& field, V
         eval::ForEachGaussPoint(surface, face, [&](eval::SurfacePlace const& place, double) {
             Vector vector;
             sampler.Evaluate(face, place.domain, {&place.s, 1}, {&place.t, 1}, {&vector, 1});
-            visit(eval::EvaluateSample(tree, place.domain, place.s, place.t, 1.0), vector);
+            visit(eval::EvaluateSample(tree, place.domain, place.s, place.t), vector);
         });
     }
     EXPECT_GT(numFaces, 0);

@@ -50,7 +50,7 @@ TEST(PlaceStencils, AgreeWithEvaluatingEachPlaceOnEveryCage) {
         LimitSurface const surface(*refiner);
         auto const places = MakePlaces(surface);
         PlaceStencils const stencils(surface, places);
-        auto const samples = stencils.Evaluate(scene.positions, 1.0);
+        auto const samples = stencils.Evaluate(scene.positions, Orientation::Right);
         FaceTree tree(surface, scene.positions, 3);
         double const scale = Scale(scene);
         size_t numCompared = 0;
@@ -58,8 +58,7 @@ TEST(PlaceStencils, AgreeWithEvaluatingEachPlaceOnEveryCage) {
             if (!surface.HasLimit(places[i].face)) continue;
             ++numCompared;
             tree.Bind(places[i].face);
-            auto const expected =
-                EvaluateSample(tree, places[i].domain, places[i].s, places[i].t, 1.0);
+            auto const expected = EvaluateSample(tree, places[i].domain, places[i].s, places[i].t);
             auto const& c = samples[i].curvature;
             ASSERT_LT((samples[i].position - expected.position).norm(), 1e-13 * scale)
                 << shape << i;
@@ -81,11 +80,11 @@ TEST(PlaceStencils, OrdinaryPlacesAgreeToTheLastDigits) {
     for (int i = 1; i < 40; ++i) places.push_back({0, 0, i / 40.0, 1.0 - i / 50.0});
     PlaceStencils const stencils(surface, places);
     EXPECT_EQ(stencils.GetNumRows(), places.size());
-    auto const samples = stencils.Evaluate(scene.positions, 1.0);
+    auto const samples = stencils.Evaluate(scene.positions, Orientation::Right);
     FaceTree tree(surface, scene.positions, 3);
     tree.Bind(0);
     for (size_t i = 0; i < places.size(); ++i) {
-        auto const expected = EvaluateSample(tree, 0, places[i].s, places[i].t, 1.0);
+        auto const expected = EvaluateSample(tree, 0, places[i].s, places[i].t);
         EXPECT_LT((samples[i].normal - expected.normal).norm(), 1e-13);
         EXPECT_NEAR(samples[i].curvature.k1, expected.curvature.k1, 1e-12);
         EXPECT_NEAR(samples[i].curvature.k2, expected.curvature.k2, 1e-12);
@@ -97,11 +96,12 @@ TEST(PlaceStencils, FarFromTheOriginNoDigitsAreLostBesideThePositions) {
     auto const refiner = far_ext::CreateRefiner(scene.cage);
     LimitSurface const surface(*refiner);
     PlaceStencils const stencils(surface, {{0, 0, 0.25, 0.5}});
-    double const k1 = stencils.Evaluate(scene.positions, 1.0)[0].curvature.k1;
+    double const k1 = stencils.Evaluate(scene.positions, Orientation::Right)[0].curvature.k1;
     for (double& x : scene.positions) x += 1024.0;
-    EXPECT_NEAR(stencils.Evaluate(scene.positions, 1.0)[0].curvature.k1, k1, 1e-10);
+    EXPECT_NEAR(stencils.Evaluate(scene.positions, Orientation::Right)[0].curvature.k1, k1, 1e-10);
     StencilEvaluator const evaluator(EvaluatorKind::Simd, stencils.MakeRows());
-    EXPECT_NEAR(stencils.Evaluate(scene.positions, 1.0, evaluator)[0].curvature.k1, k1, 1e-4);
+    EXPECT_NEAR(stencils.Evaluate(scene.positions, Orientation::Right, evaluator)[0].curvature.k1,
+                k1, 1e-4);
 }
 
 TEST(PlaceStencils, EvaluatorsInFloatAgree) {
@@ -110,10 +110,10 @@ TEST(PlaceStencils, EvaluatorsInFloatAgree) {
     LimitSurface const surface(*refiner);
     auto const places = MakePlaces(surface);
     PlaceStencils const stencils(surface, places);
-    auto const expected = stencils.Evaluate(scene.positions, 1.0);
+    auto const expected = stencils.Evaluate(scene.positions, Orientation::Right);
     for (auto kind : {EvaluatorKind::Simd, EvaluatorKind::OsdCpu}) {
-        auto const samples =
-            stencils.Evaluate(scene.positions, 1.0, StencilEvaluator(kind, stencils.MakeRows()));
+        auto const samples = stencils.Evaluate(scene.positions, Orientation::Right,
+                                               StencilEvaluator(kind, stencils.MakeRows()));
         for (size_t i = 0; i < places.size(); ++i) {
             ASSERT_LT((samples[i].position - expected[i].position).norm(), 1e-6 * Scale(scene))
                 << GetName(kind) << i;
@@ -128,7 +128,7 @@ TEST(PlaceStencils, WhatFloatCannotHoldIsRefused) {
     LimitSurface const surface(*refiner);
     PlaceStencils const stencils(surface, {{0, 0, 0.5, 0.5}});
     scene.positions[3] = 1e300;
-    EXPECT_THROW(stencils.Evaluate(scene.positions, 1.0,
+    EXPECT_THROW(stencils.Evaluate(scene.positions, Orientation::Right,
                                    StencilEvaluator(EvaluatorKind::Simd, stencils.MakeRows())),
                  Error);
 }
@@ -157,8 +157,9 @@ TEST(PlaceStencils, PositionsThatAreTooShortAreRefused) {
     StencilEvaluator const evaluator(EvaluatorKind::Simd, stencils.MakeRows());
     std::vector<double> const six(6);
     std::string const message = "positions: 6 values are too few for 8 vertices of 3";
-    EXPECT_EQ(test::RefusalOf([&] { stencils.Evaluate(six, 1.0); }), message);
-    EXPECT_EQ(test::RefusalOf([&] { stencils.Evaluate(six, 1.0, evaluator); }), message);
+    EXPECT_EQ(test::RefusalOf([&] { stencils.Evaluate(six, Orientation::Right); }), message);
+    EXPECT_EQ(test::RefusalOf([&] { stencils.Evaluate(six, Orientation::Right, evaluator); }),
+              message);
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ double IntegrateFinely(Fan& fan, double radius, Weight weight) {
                     double const width = isTriangle ? p : 1.0;
                     double const a = origin[0] + p * x[0] + width * q * y[0],
                                  b = origin[1] + p * x[1] + width * q * y[1];
-                    auto const at = eval::EvaluateSample(fan.tree, 0, a, b, 1.0);
+                    auto const at = eval::EvaluateSample(fan.tree, 0, a, b);
                     double const area = at.tangentS.cross(at.tangentT).norm() *
                                         std::abs(x[0] * y[1] - x[1] * y[0]) * width;
                     sum += at.curvature.gaussian * area * weight(a, b) * kWeights[i % 3] *

@@ -199,7 +199,7 @@ TEST(FaceTree, ADomainThatDoesNotExistIsRefused) {
     ExpectRefusal([&] { subject.tree.GetRoot(5); }, message);
     ExpectRefusal([&] { subject.tree.Locate(5, 0.5, 0.5, 5); }, message);
     ExpectRefusal([&] { subject.tree.ForEachPiece(5, half, half, 5, ignore, ignore); }, message);
-    ExpectRefusal([&] { eval::EvaluateSample(subject.tree, 5, 0.5, 0.5, 1.0); }, message);
+    ExpectRefusal([&] { eval::EvaluateSample(subject.tree, 5, 0.5, 0.5); }, message);
     ExpectRefusal([&] { eval::EvaluateDerivatives(subject.tree, 5, 0.5, 0.5); }, message);
     ExpectRefusal([&] { eval::EvaluateChannel(subject.tree, 5, 0.5, 0.5, 0); }, message);
 }
@@ -209,7 +209,7 @@ TEST(FaceTree, APlaceOutsideItsDomainIsRefused) {
     subject.tree.Bind(0);
     std::string const message = "(1.5, -3) lies outside domain 0 of face 0";
     ExpectRefusal([&] { subject.tree.Locate(0, 1.5, -3.0, 5); }, message);
-    ExpectRefusal([&] { eval::EvaluateSample(subject.tree, 0, 1.5, -3.0, 1.0); }, message);
+    ExpectRefusal([&] { eval::EvaluateSample(subject.tree, 0, 1.5, -3.0); }, message);
     ExpectRefusal([&] { eval::EvaluateDerivatives(subject.tree, 0, 1.5, -3.0); }, message);
     ExpectRefusal([&] { eval::EvaluateChannel(subject.tree, 0, 1.5, -3.0, 0); }, message);
     double const nan = std::numeric_limits<double>::quiet_NaN();
@@ -268,7 +268,7 @@ TEST(FaceTree, AChannelThatDoesNotExistIsRefused) {
     ExpectRefusal([&] { eval::EvaluateChannel(tree, 0, 0.5, 0.5, 2); }, message);
     ExpectRefusal([&] { tree.GetBounds(0, 2); }, message);
     // No third coordinate, no position.
-    ExpectRefusal([&] { eval::EvaluateSample(tree, 0, 0.5, 0.5, 1.0); }, message);
+    ExpectRefusal([&] { eval::EvaluateSample(tree, 0, 0.5, 0.5); }, message);
     ExpectRefusal([&] { eval::EvaluateDerivatives(tree, 0, 0.5, 0.5); }, message);
 }
 

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/scene/refine.h"
 #include "eval/surface/surface_sample.h"
 #include "support/errors.h"
 #include "support/fit_meshes.h"
@@ -23,7 +22,7 @@ struct Subject {
 
     Subject(engine::Scene made, int levels)
         : scene(std::move(made)),
-          fine(engine::RefineUniformly(scene, levels, false)),
+          fine(test::Refine(scene, levels)),
           refiner(far_ext::CreateRefiner(scene.cage)),
           surface(*refiner),
           finer(FinerSurface::Build(surface, scene.cage, fine.cage, fine.positions)) {}

@@ -110,7 +110,7 @@ Deviation CompareWithBfr(engine::Scene const& scene, int level, int samplesPerSi
                     }
                     auto const expected = isLoop ? bfr.EvaluateByDifferences(coord[0], coord[1])
                                                  : bfr.Evaluate(coord[0], coord[1]);
-                    auto const sample = eval::EvaluateSample(tree, domain, s, t, 1.0);
+                    auto const sample = eval::EvaluateSample(tree, domain, s, t);
                     worst.position =
                         test::Worse(worst.position, (sample.position - expected[0]).norm() / size);
                     ++worst.numSamples;
@@ -123,7 +123,7 @@ Deviation CompareWithBfr(engine::Scene const& scene, int level, int samplesPerSi
                         test::Worse(worst.normal, (sample.normal - n.normalized()).norm());
                     ++worst.numNormals;
                     auto const k = eval::ComputeCurvature(expected[1], expected[2], expected[3],
-                                                          expected[4], expected[5], 1.0);
+                                                          expected[4], expected[5]);
                     double const scale = std::max({std::abs(k.k1), std::abs(k.k2), 1e-3 / size});
                     for (double miss : {k.k1 - sample.curvature.k1, k.k2 - sample.curvature.k2})
                         worst.curvature = test::Worse(worst.curvature, std::abs(miss) / scale);
@@ -194,7 +194,7 @@ TEST_P(CornersOf, AreWhereRefinementLeads) {
             for (int level = 0; level < kLevels; ++level)
                 vertex = deep->GetLevel(level).GetVertexChildVertex(vertex);
             auto const place = eval::GetCornerPlace(surface, face, corner);
-            auto const sample = eval::EvaluateSample(tree, place.domain, place.s, place.t, 1.0);
+            auto const sample = eval::EvaluateSample(tree, place.domain, place.s, place.t);
             EXPECT_LT((sample.position - Eigen::Vector3d(&points[3 * static_cast<size_t>(vertex)]))
                           .norm(),
                       2e-3 * size)
@@ -225,7 +225,7 @@ std::vector<double> MeanTowardsVertex(int valence, double cup, double saddle, in
     std::vector<double> values;
     for (int level = fromLevel; level <= toLevel; ++level) {
         double const at = std::ldexp(0.75, -level);
-        auto const sample = eval::EvaluateSample(tree, 0, at, at, 1.0);
+        auto const sample = eval::EvaluateSample(tree, 0, at, at);
         EXPECT_FALSE(sample.isMoved);
         values.push_back(sample.curvature.mean);
     }
@@ -260,11 +260,9 @@ TEST(LimitSurface, SamplesNearerThanTheLimitAreMovedAndSaySo) {
     LimitSurface const surface(*refiner);
     FaceTree tree(surface, scene.positions, 3);
     tree.Bind(0);
-    auto const edge =
-        eval::EvaluateSample(tree, 0, 0x1p-16, 0x1p-17, 1.0);  // at the limit distance
-    auto const near =
-        eval::EvaluateSample(tree, 0, 0x1p-20, 0x1p-21, 1.0);  // same direction, nearer
-    auto const corner = eval::EvaluateSample(tree, 0, 0.0, 0.0, 1.0);
+    auto const edge = eval::EvaluateSample(tree, 0, 0x1p-16, 0x1p-17);  // at the limit distance
+    auto const near = eval::EvaluateSample(tree, 0, 0x1p-20, 0x1p-21);  // same direction, nearer
+    auto const corner = eval::EvaluateSample(tree, 0, 0.0, 0.0);
     EXPECT_FALSE(edge.isMoved);
     EXPECT_TRUE(near.isMoved);
     EXPECT_TRUE(corner.isMoved);
@@ -284,11 +282,11 @@ TEST(LimitSurface, AParaboloidHasItsCurvature) {
     LimitSurface const surface(*refiner);
     FaceTree tree(surface, scene.positions, 3);
     tree.Bind(0);
-    auto const apex = eval::EvaluateSample(tree, 0, 0.0, 0.0, 1.0);
+    auto const apex = eval::EvaluateSample(tree, 0, 0.0, 0.0);
     EXPECT_NEAR(apex.normal[2], 1.0, 1e-12);
     EXPECT_NEAR(apex.curvature.k1, -0.2, 1e-12);
     EXPECT_NEAR(apex.curvature.k2, -0.2, 1e-12);
-    auto const turned = eval::EvaluateSample(tree, 0, 0.0, 0.0, -1.0);
+    auto const turned = eval::EvaluateSample(tree, 0, 0.0, 0.0, Orientation::Left);
     EXPECT_NEAR(turned.normal[2], -1.0, 1e-12);
     EXPECT_NEAR(turned.curvature.k1, 0.2, 1e-12);
 }
@@ -317,8 +315,8 @@ TEST_P(LimitSurfaceOf, RotatesWithItsCage) {
         ++numCompared;
         before.Bind(face);
         after.Bind(face);
-        auto const a = eval::EvaluateSample(before, 0, 0.3, 0.4, 1.0),
-                   b = eval::EvaluateSample(after, 0, 0.3, 0.4, 1.0);
+        auto const a = eval::EvaluateSample(before, 0, 0.3, 0.4),
+                   b = eval::EvaluateSample(after, 0, 0.3, 0.4);
         EXPECT_LT((R * a.position - b.position).norm(), 1e-12 * size);
         if (a.isDegenerate || a.tangentS.cross(a.tangentT).norm() < 1e-9 * size * size) continue;
         EXPECT_LT((R * a.normal - b.normal).norm(), 1e-9);

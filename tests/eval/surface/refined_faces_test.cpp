@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/scene/refine.h"
 #include "eval/surface/surface_sample.h"
 #include "far_ext/topology/refiner.h"
 #include "support/errors.h"
@@ -30,7 +29,7 @@ TEST_P(RefinedFacesOf, TheRefinedCageHasTheSameLimitThere) {
     eval::LimitSurface const surface(*refiner);
     eval::FaceTree tree(surface, scene.positions, 3);
     for (int levels : {0, 1, 3}) {
-        engine::Scene const fine = engine::RefineUniformly(scene, levels, false);
+        engine::Scene const fine = test::Refine(scene, levels);
         auto const fineRefiner = far_ext::CreateRefiner(fine.cage);
         eval::LimitSurface const fineSurface(*fineRefiner);
         eval::FaceTree fineTree(fineSurface, fine.positions, 3);

@@ -26,7 +26,7 @@ std::vector<std::vector<float>> SampleAll(engine::Scene const& scene, Quantity q
     auto const refiner = far_ext::CreateRefiner(scene.cage);
     LimitSurface const surface(*refiner);
     FaceTree tree(surface, scene.positions, 3);
-    SurfaceSampler sampler(tree, quantity, 1.0f);
+    SurfaceSampler sampler(tree, quantity, Orientation::Right);
     std::vector<std::vector<float>> planes(static_cast<size_t>(sampler.GetNumChannels()));
     std::vector<double> s, t;
     for (int j = 0; j < perSide; ++j) {
@@ -69,7 +69,7 @@ TEST(SurfaceSampler, FloatAgreesWithDoubleOnARegularMesh) {
         tree.Bind(face);
         for (int j = 0; j < 5; ++j) {
             for (int i = 0; i < 5; ++i, ++at) {
-                auto const x = eval::EvaluateSample(tree, 0, (i + 0.31) / 5, (j + 0.43) / 5, 1.0);
+                auto const x = eval::EvaluateSample(tree, 0, (i + 0.31) / 5, (j + 0.43) / 5);
                 worst = test::Worse(worst, std::abs(static_cast<double>(planes[eval::kMean][at]) -
                                                     x.curvature.mean));
                 largest = std::max(largest, std::abs(x.curvature.mean));
@@ -103,12 +103,12 @@ TEST_P(AccuracyAtVertex, CurvatureKeepsItsDigitsWithDepth) {
     auto const refiner = far_ext::CreateRefiner(fan.cage);
     LimitSurface const surface(*refiner);
     FaceTree tree(surface, fan.positions, 3), reference(surface, fan.positions, 3);
-    SurfaceSampler sampler(tree, Quantity::Curvature, 1.0f);
+    SurfaceSampler sampler(tree, Quantity::Curvature, Orientation::Right);
     sampler.Bind(0);
     reference.Bind(0);
     for (int depth = 1; depth <= 20; ++depth) {
         std::vector<double> const s{std::ldexp(0.61, -depth)}, t{std::ldexp(0.35, -depth)};
-        auto const expected = eval::EvaluateSample(reference, 0, s[0], t[0], 1.0).curvature;
+        auto const expected = eval::EvaluateSample(reference, 0, s[0], t[0]).curvature;
         bool isSampled = false;
         sampler.Evaluate(0, s, t, [&](std::span<int const>, float const* p, size_t stride) {
             isSampled = true;
@@ -187,7 +187,7 @@ TEST(SurfaceSampler, WhatIsOutOfRangeIsRefused) {
     auto const refiner = far_ext::CreateRefiner(cube.cage);
     LimitSurface const surface(*refiner);
     FaceTree tree(surface, cube.positions, 3);
-    SurfaceSampler sampler(tree, Quantity::Curvature, 1.0f);
+    SurfaceSampler sampler(tree, Quantity::Curvature, Orientation::Right);
     EXPECT_EQ(test::RefusalOf([&] { sampler.Bind(77); }),
               "face 77 does not exist; the surface has 6 faces, 0 to 5");
     sampler.Bind(3);
@@ -206,8 +206,9 @@ TEST(SurfaceSampler, ATreeWithoutPositionsIsRefused) {
     auto const refiner = far_ext::CreateRefiner(torus.cage);
     LimitSurface const surface(*refiner, 0);
     FaceTree tree(surface, torus.uvs, 2);
-    EXPECT_EQ(test::RefusalOf([&] { SurfaceSampler(tree, Quantity::Position, 1.0f); }),
-              "channel 2 does not exist; the tree has 2");
+    EXPECT_EQ(
+        test::RefusalOf([&] { SurfaceSampler(tree, Quantity::Position, Orientation::Right); }),
+        "channel 2 does not exist; the tree has 2");
 }
 
 INSTANTIATE_TEST_SUITE_P(Meshes, SurfaceSamplerOnMesh,

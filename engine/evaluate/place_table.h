@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/evaluate/evaluate.h"
+#include "engine/evaluate/places.h"
+
+namespace limn::engine {
+
+/// Places as a file lists them.
+struct PlaceTable {
+    std::string path;
+    std::vector<Index> faces;
+    std::vector<double> s, t;
+    std::vector<size_t> lines;  ///< of the file
+
+    PlaceArrays GetPlaces() const { return {faces, s, t}; }
+};
+
+/// Reads `face,s,t` lines with a header. \throws Error BadMesh, as "FILE:LINE: ..."; Io
+PlaceTable ReadPlaces(std::string const& path);
+
+/// Refuses a place by its row and line. \throws Error
+[[noreturn]] void RefuseRow(PlaceTable const& table, PlaceError const& error);
+
+/// Does what takes the table's places; one that is refused is named by its row and line.
+template <class Work>
+auto NamingRows(PlaceTable const& table, Work const& work) {
+    try {
+        return work();
+    } catch (PlaceError const& error) {
+        RefuseRow(table, error);
+    }
+}
+
+/// CSV text of places and their values, one row per place.
+///
+/// \param precision  9 or 17 significant digits
+std::string FormatValues(PlaceArrays const& places, LimitValues const& values, Precision precision);
+
+}  // namespace limn::engine
