@@ -171,6 +171,57 @@ int Run(BakeArguments const& a, Context& context) {
     return status;
 }
 
+/// What the files hold.
+void AddFileOptions(CLI::App& verb, BakeArguments& a) {
+    verb.add_option("--size", a.size, "texels: N or WxH (default 2048)");
+    verb.add_option("--tiles", a.tiles, "UDIM tiles, e.g. 1001,1003-1005 (default all)")
+        ->delimiter(',');
+    verb.add_option("--samples", a.options.samplesPerSide, "N x N samples per texel (default 1)")
+        ->check(CLI::Range(1, 16));
+    verb.add_option("--padding", a.options.padding, "texels grown round the charts (default 16)")
+        ->check(CLI::Range(0, 4096));
+    verb.add_flag("--half", a.options.isHalf, "16-bit floats (default 32-bit)");
+    verb.add_option("--compression", a.compression, "zip (default), zips, piz, rle, none or dwaa");
+    verb.add_flag("--mip", a.options.hasMips, "mip levels, for renderers");
+    verb.add_flag("--coverage", a.options.hasCoverage, "add a channel 'coverage'");
+    verb.add_flag("--preview", a.options.hasPreview, "also a PNG to look at");
+    verb.add_option("--encode", a.encode, "S,O: write value * S + O");
+}
+
+/// What single maps need.
+void AddMapOptions(CLI::App& verb, BakeArguments& a) {
+    verb.add_option("--against", a.against, "the mesh that displacement leads to");
+    verb.add_option("--rest", a.rest, "of the map tension: the mesh before it was posed");
+    verb.add_option("--bands", a.options.bands,
+                    "of the map bands: frequency bands, their smooth base included (default 4)")
+        ->check(CLI::Range(1, 64));
+    verb.add_flag("--vector", a.options.isVector, "displacement and bands as vectors");
+    AddWordOption(verb, "--space", a.options.space, kVectorSpaceWords,
+                  "object (default) or tangent, of vectors; uv: of the map field, flow in "
+                  "texture coordinates");
+    verb.add_option(
+        "--field", a.fieldPath,
+        "CSV v0,v1,value of MESH's edges, for the map field (limn field -o x.edges.csv)");
+}
+
+/// Of the map noise.
+void AddNoiseOptions(CLI::App& verb, BakeArguments& a) {
+    verb.add_option("--noise-octaves", a.options.noise.octaves,
+                    "levels of refinement with noise each (default 4)")
+        ->check(CLI::Range(1, 10));
+    verb.add_option(
+            "--noise-frequency", a.options.noise.frequency,
+            "noise cells per unit length in the first octave (default: half a cell per mean edge)")
+        ->check(CLI::Range(1e-12, 1e12));
+    verb.add_option("--noise-gain", a.options.noise.gain,
+                    "amplitude from octave to octave (default 0.5)")
+        ->check(CLI::Range(0.0, 16.0));
+    verb.add_option("--noise-seed", a.options.noise.seed,
+                    "another noise for every number (default 0)");
+    verb.add_option("--noise-ramp", a.noiseRamp,
+                    "noise as colours: '#rrggbb,#rrggbb,...' from low to high, equally spaced");
+}
+
 }  // namespace
 
 Verb AddBake(CLI::App& app) {
@@ -185,46 +236,9 @@ Verb AddBake(CLI::App& app) {
     verb->add_option("--maps", a->options.maps, "comma-separated: " + engine::ListMapNames())
         ->delimiter(',')
         ->required();
-    verb->add_option("--size", a->size, "texels: N or WxH (default 2048)");
-    verb->add_option("--tiles", a->tiles, "UDIM tiles, e.g. 1001,1003-1005 (default all)")
-        ->delimiter(',');
-    verb->add_option("--samples", a->options.samplesPerSide, "N x N samples per texel (default 1)")
-        ->check(CLI::Range(1, 16));
-    verb->add_option("--padding", a->options.padding, "texels grown round the charts (default 16)")
-        ->check(CLI::Range(0, 4096));
-    verb->add_flag("--half", a->options.isHalf, "16-bit floats (default 32-bit)");
-    verb->add_option("--compression", a->compression,
-                     "zip (default), zips, piz, rle, none or dwaa");
-    verb->add_flag("--mip", a->options.hasMips, "mip levels, for renderers");
-    verb->add_flag("--coverage", a->options.hasCoverage, "add a channel 'coverage'");
-    verb->add_flag("--preview", a->options.hasPreview, "also a PNG to look at");
-    verb->add_option("--encode", a->encode, "S,O: write value * S + O");
-    verb->add_option("--against", a->against, "the mesh that displacement leads to");
-    verb->add_option("--rest", a->rest, "of the map tension: the mesh before it was posed");
-    verb->add_option("--bands", a->options.bands,
-                     "of the map bands: frequency bands, their smooth base included (default 4)")
-        ->check(CLI::Range(1, 64));
-    verb->add_flag("--vector", a->options.isVector, "displacement and bands as vectors");
-    AddWordOption(*verb, "--space", a->options.space, kVectorSpaceWords,
-                  "object (default) or tangent, of vectors; uv: of the map field, flow in "
-                  "texture coordinates");
-    verb->add_option(
-        "--field", a->fieldPath,
-        "CSV v0,v1,value of MESH's edges, for the map field (limn field -o x.edges.csv)");
-    verb->add_option("--noise-octaves", a->options.noise.octaves,
-                     "levels of refinement with noise each (default 4)")
-        ->check(CLI::Range(1, 10));
-    verb->add_option(
-            "--noise-frequency", a->options.noise.frequency,
-            "noise cells per unit length in the first octave (default: half a cell per mean edge)")
-        ->check(CLI::Range(1e-12, 1e12));
-    verb->add_option("--noise-gain", a->options.noise.gain,
-                     "amplitude from octave to octave (default 0.5)")
-        ->check(CLI::Range(0.0, 16.0));
-    verb->add_option("--noise-seed", a->options.noise.seed,
-                     "another noise for every number (default 0)");
-    verb->add_option("--noise-ramp", a->noiseRamp,
-                     "noise as colours: '#rrggbb,#rrggbb,...' from low to high, equally spaced");
+    AddFileOptions(*verb, *a);
+    AddMapOptions(*verb, *a);
+    AddNoiseOptions(*verb, *a);
     verb->add_flag("--normalize", a->options.isNormalized,
                    "noise from 0 to 1 over the whole surface; fields of length 1");
     verb->add_flag("--audit", a->hasAudit,

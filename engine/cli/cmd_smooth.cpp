@@ -203,6 +203,59 @@ int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     return found.HasConverged() ? kDone : context.MissTarget(Explain(a.mesh, found));
 }
 
+void AddWidthOptions(CLI::App& verb, SmoothArguments& a) {
+    auto const width = [](CLI::Option* option) {
+        return option->group("Width of the filter (one of these)");
+    };
+    width(verb.add_option("--width", a.width, "sigma everywhere, in mesh units"));
+    width(verb.add_option("--width-factor", a.widthFactor,
+                          "sigma everywhere, times the mean edge length (default 0.12)"));
+    width(verb.add_flag("--local", a.isLocal,
+                        "sigma by the edge lengths at each vertex, smoothed along"));
+    width(verb.add_option("--width-scale", a.widthScale,
+                          "--local: times the edge length (default 0.12)"));
+    width(verb.add_option("--width-map", a.widthMap, "CSV vertex,width: 0 where not listed"));
+    width(verb.add_option("--width-edges", a.widthEdges,
+                          "CSV v0,v1,width: rounds these edges, and leaves faces untouched"));
+    width(verb.add_option(
+        "--width-texture", a.widthTexture,
+        "image through the texture coordinates, 0 to 1 times --width or --width-factor"));
+}
+
+void AddSolverOptions(CLI::App& verb, SmoothArguments& a) {
+    auto const solve = [](CLI::Option* option) { return option->group("Solving"); };
+    solve(AddWordOption(verb, "--refinement", a.options.refinement, kSmoothRefinementWords,
+                        "quadrisect (default): triangles in four, other faces into quads "
+                        "(--scheme catmark: triangles, too); bisect: triangles in two"));
+    solve(AddWordOption(verb, "--solver", a.options.solver, kCascadeSolverWords,
+                        "cg (default), jacobi or exact"));
+    solve(verb.add_option(
+              "--sweeps", a.sweeps,
+              "on the finest level, more on coarser ones by the a-priori rule (jacobi: default 1)"))
+        ->check(CLI::Range(1, 1000000));
+    solve(verb.add_option("--iterations", a.iterations, "the same number on every level"))
+        ->check(CLI::Range(1, 1000000));
+    solve(verb.add_option("--tolerance", a.tolerance,
+                          "cg: to this residual on every level (default 1e-6)"))
+        ->check(CLI::Range(1e-14, 1.0));
+}
+
+void AddConstraintOptions(CLI::App& verb, SmoothArguments& a) {
+    auto const keep = [](CLI::Option* option) { return option->group("What stays"); };
+    keep(AddWordOption(verb, "--boundary-rule", a.options.boundary, kBoundaryRuleWords,
+                       "fixed (default); natural: free, its triangles degenerate with the levels"));
+    keep(verb.add_flag("--keep-creases", a.options.keepsCreases,
+                       "sharp edges and corners stay sharp: the filter does not act across them"));
+    keep(verb.add_flag("--preserve-volume", a.preservesVolume,
+                       "closed components keep their volume"));
+    keep(verb.add_flag("--graph", a.isGraph,
+                       "MESH is a height field: z over the plane of x and y, which stay"));
+    keep(verb.add_flag("--limit-width", a.limitsWidth,
+                       "reduce a width that collapses the shape to what it carries"));
+    keep(verb.add_flag("--keep-result", a.keepsResult,
+                       "write what collapsed or missed its tolerance"));
+}
+
 }  // namespace
 
 Verb AddSmooth(CLI::App& app) {
@@ -215,50 +268,9 @@ Verb AddSmooth(CLI::App& app) {
         ->required();
     verb->add_option("--levels", a->options.levels, "refinements (default 2)")
         ->check(CLI::Range(1, 20));
-    auto const width = [](CLI::Option* option) {
-        return option->group("Width of the filter (one of these)");
-    };
-    width(verb->add_option("--width", a->width, "sigma everywhere, in mesh units"));
-    width(verb->add_option("--width-factor", a->widthFactor,
-                           "sigma everywhere, times the mean edge length (default 0.12)"));
-    width(verb->add_flag("--local", a->isLocal,
-                         "sigma by the edge lengths at each vertex, smoothed along"));
-    width(verb->add_option("--width-scale", a->widthScale,
-                           "--local: times the edge length (default 0.12)"));
-    width(verb->add_option("--width-map", a->widthMap, "CSV vertex,width: 0 where not listed"));
-    width(verb->add_option("--width-edges", a->widthEdges,
-                           "CSV v0,v1,width: rounds these edges, and leaves faces untouched"));
-    width(verb->add_option(
-        "--width-texture", a->widthTexture,
-        "image through the texture coordinates, 0 to 1 times --width or --width-factor"));
-    auto const solve = [](CLI::Option* option) { return option->group("Solving"); };
-    solve(AddWordOption(*verb, "--refinement", a->options.refinement, kSmoothRefinementWords,
-                        "quadrisect (default): triangles in four, other faces into quads "
-                        "(--scheme catmark: triangles, too); bisect: triangles in two"));
-    solve(AddWordOption(*verb, "--solver", a->options.solver, kCascadeSolverWords,
-                        "cg (default), jacobi or exact"));
-    solve(verb->add_option(
-              "--sweeps", a->sweeps,
-              "on the finest level, more on coarser ones by the a-priori rule (jacobi: default 1)"))
-        ->check(CLI::Range(1, 1000000));
-    solve(verb->add_option("--iterations", a->iterations, "the same number on every level"))
-        ->check(CLI::Range(1, 1000000));
-    solve(verb->add_option("--tolerance", a->tolerance,
-                           "cg: to this residual on every level (default 1e-6)"))
-        ->check(CLI::Range(1e-14, 1.0));
-    auto const keep = [](CLI::Option* option) { return option->group("What stays"); };
-    keep(AddWordOption(*verb, "--boundary-rule", a->options.boundary, kBoundaryRuleWords,
-                       "fixed (default); natural: free, its triangles degenerate with the levels"));
-    keep(verb->add_flag("--keep-creases", a->options.keepsCreases,
-                        "sharp edges and corners stay sharp: the filter does not act across them"));
-    keep(verb->add_flag("--preserve-volume", a->preservesVolume,
-                        "closed components keep their volume"));
-    keep(verb->add_flag("--graph", a->isGraph,
-                        "MESH is a height field: z over the plane of x and y, which stay"));
-    keep(verb->add_flag("--limit-width", a->limitsWidth,
-                        "reduce a width that collapses the shape to what it carries"));
-    keep(verb->add_flag("--keep-result", a->keepsResult,
-                        "write what collapsed or missed its tolerance"));
+    AddWidthOptions(*verb, *a);
+    AddSolverOptions(*verb, *a);
+    AddConstraintOptions(*verb, *a);
     auto* const picture =
         verb->add_option("--picture", a->picture, "also write a PNG: the result, flat shaded");
     verb->add_option("--view", a->view,

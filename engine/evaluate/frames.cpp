@@ -125,6 +125,29 @@ void CheckTopology(Model const& model, Scene const& frame) {
                                                 model.GetPath(), Describe(frame, *difference)));
 }
 
+/// Where the answers of each frame go.
+std::vector<std::string> MakeOutputPaths(std::string const& pattern,
+                                         std::vector<Frame> const& frames) {
+    if (pattern.find(kToken) == std::string::npos) {
+        throw Error(
+            ErrorCode::BadOption,
+            fmt::format(
+                "`outputPattern` {}: {{frame}} is missing; every frame goes to a file of its own",
+                pattern));
+    }
+    std::vector<std::string> outputs;
+    for (Frame const& frame : frames) {
+        outputs.push_back(MakeOutputPath(pattern, frame.name));
+        if (fs::path(outputs.back()).lexically_normal() ==
+            fs::path(frame.path).lexically_normal()) {
+            throw Error(ErrorCode::BadOption,
+                        fmt::format("`outputPattern` {}: would replace the frame '{}'", pattern,
+                                    frame.path));
+        }
+    }
+    return outputs;
+}
+
 }  // namespace
 
 std::vector<Frame> FindFrames(std::string const& folderOrPattern) {
@@ -147,13 +170,8 @@ std::vector<Frame> FindFrames(std::string const& folderOrPattern) {
 FramesReport EvaluateFrames(Model const& model, PlaceArrays const& places,
                             std::vector<Frame> const& frames, FrameOptions const& options,
                             Job& job) {
-    if (options.outputPattern.find(kToken) == std::string::npos) {
-        throw Error(
-            ErrorCode::BadOption,
-            fmt::format(
-                "`outputPattern` {}: {{frame}} is missing; every frame goes to a file of its own",
-                options.outputPattern));
-    }
+    FramesReport report;
+    report.outputs = MakeOutputPaths(options.outputPattern, frames);
     eval::LimitSurface const surface(model.GetRefiner());
     eval::PlaceStencils const stencils(surface, LocatePlaces(model, places));
     std::optional<eval::StencilEvaluator> evaluator;
@@ -167,16 +185,6 @@ FramesReport EvaluateFrames(Model const& model, PlaceArrays const& places,
     // frames are many and independent, so that the cores are kept busy by different frames at
     // different stages.
     std::vector<std::unique_ptr<AtomicFile>> files(frames.size());
-    FramesReport report;
-    for (Frame const& frame : frames) {
-        report.outputs.push_back(MakeOutputPath(options.outputPattern, frame.name));
-        if (fs::path(report.outputs.back()).lexically_normal() ==
-            fs::path(frame.path).lexically_normal()) {
-            throw Error(ErrorCode::BadOption,
-                        fmt::format("`outputPattern` {}: would replace the frame '{}'",
-                                    options.outputPattern, frame.path));
-        }
-    }
     job.Start("frames", frames.size());
     size_t next = 0;
     auto const choose = [&](tbb::flow_control& control) {

@@ -30,6 +30,45 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ExrWriterAs,
                                          WriterCase{ExrCompression::Piz, false, true},
                                          WriterCase{ExrCompression::Dwaa, true, false}));
 
+float ValueAt(int level, int c, int x, int y) {
+    return 0.25f * static_cast<float>(level + c) + 0.001f * static_cast<float>(x - 2 * y);
+}
+
+/// All tiles of a level of three channels.
+void WriteLevel(ExrWriter& writer, ExrSpec const& spec, int level) {
+    int const w = spec.GetLevelWidth(level), h = spec.GetLevelHeight(level);
+    std::vector<std::vector<float>> planes(3);
+    for (int c = 0; c < 3; ++c) {
+        for (int y = 0; y < h; ++y) {
+            for (int x = 0; x < w; ++x)
+                planes[static_cast<size_t>(c)].push_back(ValueAt(level, c, x, y));
+        }
+    }
+    for (int ty = 0; ty * 64 < h; ++ty) {
+        for (int tx = 0; tx * 64 < w; ++tx) {
+            float const* tile[3];
+            for (size_t c = 0; c < 3; ++c)
+                tile[c] = &planes[c][static_cast<size_t>(ty * 64 * w + tx * 64)];
+            writer.Write(writer.Pack(level, tx, ty, tile, static_cast<size_t>(w)));
+        }
+    }
+}
+
+/// By OpenEXR's own reader, R, G and B of one pixel after another.
+std::vector<float> ReadLevel(Imf::TiledInputFile& input, int level) {
+    int const w = input.levelWidth(level), h = input.levelHeight(level);
+    std::vector<float> pixels(static_cast<size_t>(3 * w * h));
+    Imf::FrameBuffer buffer;
+    char const* const names[3] = {"R", "G", "B"};
+    for (size_t c = 0; c < 3; ++c) {
+        buffer.insert(names[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels.data() + c),
+                                           12, 12 * static_cast<size_t>(w)));
+    }
+    input.setFrameBuffer(buffer);
+    input.readTiles(0, input.numXTiles(level) - 1, 0, input.numYTiles(level) - 1, level);
+    return pixels;
+}
+
 // What is packed is what OpenEXR's own reader finds, on every level, at sizes that are no multiple
 // of a tile.
 TEST_P(ExrWriterAs, ReadsBackThroughOpenExr) {
@@ -43,30 +82,10 @@ TEST_P(ExrWriterAs, ReadsBackThroughOpenExr) {
     spec.attributes = {{"limn:map", "test"}};
     test::TemporaryFolder const folder;
     std::string const path = folder / "a.exr";
-    auto const value = [](int level, int c, int x, int y) {
-        return 0.25f * static_cast<float>(level + c) + 0.001f * static_cast<float>(x - 2 * y);
-    };
     {
         ExrWriter writer(path, spec);
         EXPECT_FALSE(std::filesystem::exists(path));  // not before it is complete
-        for (int level = 0; level < spec.GetNumLevels(); ++level) {
-            int const w = spec.GetLevelWidth(level), h = spec.GetLevelHeight(level);
-            std::vector<std::vector<float>> planes(3);
-            for (int c = 0; c < 3; ++c) {
-                for (int y = 0; y < h; ++y) {
-                    for (int x = 0; x < w; ++x)
-                        planes[static_cast<size_t>(c)].push_back(value(level, c, x, y));
-                }
-            }
-            for (int ty = 0; ty * 64 < h; ++ty) {
-                for (int tx = 0; tx * 64 < w; ++tx) {
-                    float const* tile[3];
-                    for (size_t c = 0; c < 3; ++c)
-                        tile[c] = &planes[c][static_cast<size_t>(ty * 64 * w + tx * 64)];
-                    writer.Write(writer.Pack(level, tx, ty, tile, static_cast<size_t>(w)));
-                }
-            }
-        }
+        for (int level = 0; level < spec.GetNumLevels(); ++level) WriteLevel(writer, spec, level);
         writer.Commit();
     }
     Imf::TiledInputFile input(path.c_str());
@@ -76,24 +95,11 @@ TEST_P(ExrWriterAs, ReadsBackThroughOpenExr) {
                              : spec.isHalf                                  ? 1e-3
                                                                             : 0.0;
     for (int level = 0; level < spec.GetNumLevels(); ++level) {
-        int const w = input.levelWidth(level), h = input.levelHeight(level);
-        std::vector<float> pixels(static_cast<size_t>(3 * w * h));
-        Imf::FrameBuffer buffer;
-        char const* const names[3] = {"R", "G", "B"};
-        for (size_t c = 0; c < 3; ++c) {
-            buffer.insert(names[c],
-                          Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels.data() + c), 12,
-                                     12 * static_cast<size_t>(w)));
-        }
-        input.setFrameBuffer(buffer);
-        input.readTiles(0, input.numXTiles(level) - 1, 0, input.numYTiles(level) - 1, level);
-        for (int y = 0; y < h; ++y) {
-            for (int x = 0; x < w; ++x) {
-                for (int c = 0; c < 3; ++c) {
-                    ASSERT_NEAR(pixels[static_cast<size_t>(3 * (y * w + x) + c)],
-                                value(level, c, x, y), tolerance);
-                }
-            }
+        int const w = input.levelWidth(level);
+        std::vector<float> const pixels = ReadLevel(input, level);
+        for (size_t i = 0; i < pixels.size(); ++i) {
+            int const pixel = static_cast<int>(i / 3), c = static_cast<int>(i % 3);
+            ASSERT_NEAR(pixels[i], ValueAt(level, c, pixel % w, pixel / w), tolerance);
         }
     }
     auto const attributes = ReadExrAttributes(path, "limn:");
