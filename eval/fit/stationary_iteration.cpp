@@ -15,10 +15,10 @@ namespace {
 
 using Stage = LimitOperator::Stage;
 
-/// The larger one; not std::max, since a residual that is no number must be seen.
+/// The larger one, or the one that is no number: a residual that is none must be seen.
 template <class Real>
 Real Larger(Real value, Real largest) {
-    return value <= largest ? largest : value;
+    return value <= largest || std::isnan(largest) ? largest : value;
 }
 
 template <class Real>
