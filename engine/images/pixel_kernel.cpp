@@ -62,8 +62,8 @@ void FindRange(float const* values, uint8_t const* covered, size_t count, float*
         __builtin_memcpy(&value, values + i, sizeof value);
         __builtin_memcpy(&bytes, covered + i, sizeof bytes);
         Mask const isCovered = __builtin_convertvector(bytes, Mask) != 0;
-        least = isCovered & (value < least) ? value : least;
-        most = isCovered & (value > most) ? value : most;
+        least = (isCovered & (value < least)) ? value : least;
+        most = (isCovered & (value > most)) ? value : most;
     }
     for (size_t l = 0; l < kLanes; ++l) {
         *low = least[l] < *low ? least[l] : *low;

@@ -43,10 +43,9 @@ private:
 
     size_t Count(char const* what) {
         double const count = _scan.Number(what);
-        if (count < 0 || count != std::floor(count) ||
-            count > std::numeric_limits<Index>::max() / 4) {
-            _scan.Refuse(fmt::format("{} is {}; 0 to {} are possible", what, count,
-                                     std::numeric_limits<Index>::max() / 4));
+        constexpr Index kMost = std::numeric_limits<Index>::max() / 4;
+        if (count < 0 || count != std::floor(count) || count > kMost) {
+            _scan.Refuse(fmt::format("{} is {}; 0 to {} are possible", what, count, kMost));
         }
         return static_cast<size_t>(count);
     }

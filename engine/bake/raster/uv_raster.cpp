@@ -248,7 +248,7 @@ void UVRaster::Accept(TexturePiece const& piece, TexelHits& hits) {
             if (where[i] == eval::Whereabouts::Outside || owner[i] == _face || IsSettled(texel + i))
                 continue;
             double s = x[i] + centre, t = y[i] + centre;
-            size_t const target = static_cast<size_t>(row.first + i);
+            size_t const target = static_cast<size_t>(row.first) + static_cast<size_t>(i);
             if (!IsCovered(piece, texel + i, where[i] != eval::Whereabouts::Unsolved,
                            _targetX[target], _targetY[target], s, t))
                 continue;
