@@ -187,6 +187,8 @@ protected:
                                                       _report, _job);
         return {*_input, std::vector<char>(scene.cage.faceSizes.size(), 1)};
     }
+
+private:
     engine::BakeOptions _options;
     engine::BakeReport _report;
     engine::Job _job;
