@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# The install tree: public headers under include/limn, the floors as limn::far_ext, limn::eval, limn::engine.
+# The install tree: public headers under include/limn, the floors as limn::far_ext, limn::eval,
+# limn::engine, and the command line as limn::cli.
 include(CMakePackageConfigHelpers)
 
-install(TARGETS limn_far_ext limn_eval limn_evaluators limn_engine EXPORT limnTargets
+install(TARGETS limn_far_ext limn_eval limn_evaluators limn_engine limn_cli EXPORT limnTargets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
     FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/limn)
 install(TARGETS limn RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

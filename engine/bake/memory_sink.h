@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,17 @@ struct BakedImage {
     std::vector<std::string> channels;
     std::vector<float> texels;    ///< [row][column][channel]
     std::vector<float> coverage;  ///< [row][column], 0 to 1; 0 for padding
+
+    /// A texel's channels.
+    std::span<float const> GetTexel(int row, int column) const {
+        return {&texels[GetIndex(row, column) * channels.size()], channels.size()};
+    }
+    float GetCoverage(int row, int column) const { return coverage[GetIndex(row, column)]; }
+
+private:
+    size_t GetIndex(int row, int column) const {
+        return static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column);
+    }
 };
 
 /// Keeps a bake's images in memory.

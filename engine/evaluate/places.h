@@ -11,8 +11,8 @@
 
 namespace limn::engine {
 
-/// Places of a mesh's limit surface: base faces and (s,t) in Bfr's parameterisation of each (docs:
-/// "The command line", eval). Arrays of one length, read during a call.
+/// Places of a mesh's limit surface: base faces and (s,t) in Bfr's parameterisation of each, which
+/// docs/library.md describes. Arrays of one length, read during a call.
 struct PlaceArrays {
     std::span<Index const> faces;
     std::span<double const> s, t;

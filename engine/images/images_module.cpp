@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -14,28 +15,43 @@ namespace limn::engine {
 
 namespace {
 
-ImagesModule const* OpenModule() {
-    namespace fs = std::filesystem;
+namespace fs = std::filesystem;
+
+constexpr char const* kFile = "limn_images.so";
+
+/// Where the module lies for limn itself, and for programs of its build tree.
+std::vector<fs::path> ListFolders() {
     std::error_code ignored;
     fs::path const program = fs::read_symlink("/proc/self/exe", ignored).parent_path();
+    return {program, program / "engine", program / ".." / "engine",
+            program / ".." / ".." / "engine", program / ".." / LIMN_MODULE_FOLDER};
+}
+
+/// \param reason  receives why not, where the result is null
+ImagesModule const* Open(std::string const& file, std::string& reason) {
+    if (void* const handle = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) {
+        auto const entry =
+            reinterpret_cast<decltype(&limn_images_module)>(::dlsym(handle, "limn_images_module"));
+        if (entry) return entry();
+    }
+    char const* const error = ::dlerror();
+    reason = error ? error : "it has no entry point";
+    return nullptr;
+}
+
+ImagesModule const* OpenModule() {
     std::string reason;
-    for (fs::path const& folder :
-         {program, program / "engine", program / ".." / "engine", program / ".." / ".." / "engine",
-          program / ".." / LIMN_MODULE_FOLDER}) {
-        fs::path const file = folder / "limn_images.so";
-        if (!fs::exists(file, ignored)) continue;
-        void* const handle = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-        if (handle) {
-            auto const entry = reinterpret_cast<decltype(&limn_images_module)>(
-                ::dlsym(handle, "limn_images_module"));
-            if (entry) return entry();
-        }
-        char const* const error = ::dlerror();
-        reason = error ? error : "it has no entry point";
+    for (fs::path const& folder : ListFolders()) {
+        std::error_code ignored;
+        if (!fs::exists(folder / kFile, ignored)) continue;
+        if (auto const* const module = Open(folder / kFile, reason)) return module;
+    }
+    // Other programs that link limn::engine have its folder in their run path.
+    if (reason.empty()) {
+        if (auto const* const module = Open(kFile, reason)) return module;
     }
     throw Error(ErrorCode::Io,
-                fmt::format("the image module limn_images.so cannot be loaded: {}",
-                            reason.empty() ? "it is not beside the program" : reason));
+                fmt::format("the image module limn_images.so cannot be loaded: {}", reason));
 }
 
 }  // namespace

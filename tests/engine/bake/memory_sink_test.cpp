@@ -47,15 +47,15 @@ TEST(BakeToMemory, HoldsWhatTheFilesHold) {
         for (int y = 0; y < image.height; ++y) {
             for (int x = 0; x < image.width; ++x) {
                 auto const file = lookup.Look(report.outputs[i].path, channels, x, y);
-                size_t const texel = static_cast<size_t>(y * image.width + x);
+                auto const texel = image.GetTexel(y, x);
+                float const coverage = image.GetCoverage(y, x);
                 bool hasValue = false;
-                for (size_t c = 0; c < image.channels.size(); ++c) {
-                    float const value = image.texels[texel * image.channels.size() + c];
-                    ASSERT_EQ(value, static_cast<float>(file[c])) << x << " " << y;
-                    hasValue |= value != 0.0f;
+                for (size_t c = 0; c < texel.size(); ++c) {
+                    ASSERT_EQ(texel[c], static_cast<float>(file[c])) << x << " " << y;
+                    hasValue |= texel[c] != 0.0f;
                 }
-                ASSERT_EQ(image.coverage[texel], static_cast<float>(file.back()));
-                numPadded += hasValue && image.coverage[texel] == 0.0f;
+                ASSERT_EQ(coverage, static_cast<float>(file.back()));
+                numPadded += hasValue && coverage == 0.0f;
             }
         }
     }
