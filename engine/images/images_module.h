@@ -19,7 +19,8 @@ struct ImagesModule {
                              char* reason, size_t reasonSize);
 };
 
-/// \throws Error  Io if the module is missing: beside the program, in its library folder, and in the
+/// \throws Error  Io if the module is missing: beside the program, in its library folder, and in
+/// the
 ///                run path that programs get from linking limn::engine
 ImagesModule const& LoadImagesModule();
 
