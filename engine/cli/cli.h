@@ -18,7 +18,7 @@
 
 namespace limn::cli {
 
-/// Options every verb shares (docs: "The command line").
+/// Options every verb shares (docs/architecture.md).
 struct CommonOptions {
     std::optional<std::string> scheme, boundary, fvar, creases, triangles;
     std::string reportPath;

@@ -38,14 +38,14 @@ void RequireSameFaces(Model const& from, Model const& to) {
 Morph::Morph(Model const& from, Model const& to, MorphOptions const& options)
     : _to(to),
       _options(options),
-      _A(eval::LimitOperator::Build(to.GetRefiner(), 0, {.alpha = options.alpha})),
+      _operator(eval::LimitOperator::Build(to.GetRefiner(), 0, {.alpha = options.alpha})),
       _positions(from.GetPositions()) {
     RequireSameFaces(from, to);
 }
 
 std::vector<double> const& Morph::MakeNext(Job& job) {
     job.CheckStopped();
-    eval::MorphStep(_A, 3, _options.detail, _options.rate, _to.GetPositions(), _positions);
+    eval::MorphStep(_operator, 3, _options.detail, _options.rate, _to.GetPositions(), _positions);
     return _positions;
 }
 

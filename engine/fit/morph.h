@@ -31,7 +31,7 @@ public:
 private:
     Model _to;
     MorphOptions _options;
-    eval::LimitOperator _A;
+    eval::LimitOperator _operator;
     std::vector<double> _positions;
 };
 

@@ -124,21 +124,19 @@ INSTANTIATE_TEST_SUITE_P(Places, PlaceOutside,
                                          Outside{true, kInfinity, -kInfinity}));
 
 TEST_P(PlaceOutside, IsRefused) {
-    auto const [isLoop, s, t] = GetParam();
-    EXPECT_EQ(test::CodeOf([&, isLoop = isLoop, s = s, t = t] {
-                  eval::CheckInDomain(isLoop, {0, 0, s, t});
-              }),
+    Outside const place = GetParam();
+    EXPECT_EQ(test::CodeOf([&] { eval::CheckInDomain(place.isLoop, {0, 0, place.s, place.t}); }),
               ErrorCode::BadOption);
 }
 
 TEST_P(PlaceOutside, IsFoundWhereverItStandsInAnArray) {
-    auto const [isLoop, badS, badT] = GetParam();
+    Outside const place = GetParam();
     for (size_t at = 0; at < 5; ++at) {
         std::vector<double> s(5, 0.25), t(5, 0.25);
-        s[at] = badS;
-        t[at] = badT;
+        s[at] = place.s;
+        t[at] = place.t;
         auto const refusal =
-            test::RefusalOf([&, isLoop = isLoop] { eval::CheckInDomain(isLoop, 0, 0, s, t); });
+            test::RefusalOf([&] { eval::CheckInDomain(place.isLoop, 0, 0, s, t); });
         EXPECT_TRUE(refusal.starts_with(fmt::format("place {}: ", at))) << refusal;
     }
 }
