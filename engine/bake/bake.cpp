@@ -122,8 +122,8 @@ BakeReport BakeTo(BakeDestination& destination, std::string const& pattern, Mode
     baker.AddCounts(report, movedPlaces);
     if (report.outputs.empty()) {
         throw Error(ErrorCode::BadMesh,
-                    fmt::format("{}: no texel is covered in the tiles asked for; see limn info for "
-                                "where the texture coordinates lie",
+                    fmt::format("{}: no texel is covered in the tiles asked for; the texture "
+                                "coordinates lie in others",
                                 model.GetPath()));
     }
     WarnOf(report, std::move(movedPlaces), model, job);

@@ -31,7 +31,7 @@ public:
                std::vector<std::unique_ptr<Map>> const& maps, Job& job);
     ~StripBaker();
 
-    /// Bounds of faces' texture coordinates; meaningless where !IsBaked.
+    /// Bounds of faces' texture coordinates; meaningless where a face is not baked.
     std::vector<UVBounds> const& GetBounds() const { return _bounds; }
     std::vector<char> const& GetIsBaked() const { return _isBaked; }
 

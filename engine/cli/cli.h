@@ -18,7 +18,7 @@
 
 namespace limn::cli {
 
-/// Options every verb shares (docs/architecture.md).
+/// Options every verb shares.
 struct CommonOptions {
     std::optional<std::string> scheme, boundary, fvar, creases, triangles;
     std::string reportPath;

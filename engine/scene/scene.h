@@ -43,7 +43,7 @@ struct Scene {
     std::vector<Primvar> primvars;
     std::vector<uint32_t> faceLines;  ///< line of each face in a text file; empty otherwise
 
-    /// Which options the file itself set by tags; the command line overrides both.
+    /// Which options the file itself set by tags; whoever asks for others overrides them.
     bool hasBoundaryTag = false, hasFVarTag = false;
 
     std::vector<std::string> warnings;  ///< what the reader remarked, one line each

@@ -109,10 +109,10 @@ struct SmoothResult {
 /// \param model   of the scheme Loop where triangles are to stay triangles
 /// \param job     told of progress, and of a metric that was frozen, sharp corners, volumes that
 ///                could not be kept
-/// \throws Error  BadMesh: not manifold or oriented two ways; a width above 1e6 of the mesh's size,
-///                or that is no number from 0 up; for graphs, faces that overlap in the plane.
-///                BadOption: a residual for Jacobi sweeps, widths for another number of vertices.
-///                As SmoothLevels
+/// \throws Error  BadMesh: not manifold or oriented two ways; a width above 1e6 of the mesh's size;
+///                for graphs, faces that overlap in the plane.  BadOption: a width that is no
+///                number from 0 up, a residual for Jacobi sweeps, widths for another number of
+///                vertices.  As SmoothLevels
 /// \throws Stopped
 /// Source  [Diewald02] Sec. 5 to 8; [Cascade 2], [Cascade 9]
 SmoothResult Smooth(Model const& model, FilterWidths const& widths, SmoothOptions const& options,

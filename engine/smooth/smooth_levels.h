@@ -23,7 +23,7 @@ public:
     /// \param model         kept by reference
     /// \param keepsCreases  whether creases and corners split the filter, as long as their
     ///                      sharpness lasts; bisection keeps infinitely sharp ones only
-    /// \throws Error        BadOption: bisection of faces that are no triangles.  As
+    /// \throws Error        BadMesh: bisection of faces that are no triangles.  As
     ///                      RefineUniformly
     SmoothLevels(Model const& model, int numLevels, SmoothRefinement refinement, bool keepsCreases);
 

@@ -38,7 +38,9 @@ class FieldDesigner {
 public:
     /// \param level      a base level that far_ext::CheckForms has passed; must outlive this
     /// \param positions  3 per vertex
-    /// \throws Error     as far_ext::FindHodgeStars
+    /// \throws Error     as far_ext::FindHodgeStars; BadMesh: edges or angles that differ by so
+    /// many
+    ///                   orders of magnitude that nothing can be solved in double
     FieldDesigner(Far::TopologyLevel const& level, std::span<double const> positions,
                   AtBoundary atBoundary);
     ~FieldDesigner();

@@ -20,7 +20,7 @@ namespace limn::eval {
 ///            and places whose tangents vanish or nearly coincide in some frame, are evaluated as
 ///            EvaluateSample does it. What the rows make agrees with EvaluateSample to about 1e-12
 ///            of the mesh's size.
-/// Threads    Immutable once built; Evaluate works inside in the caller's TBB arena.
+/// Threads    Immutable once built; Evaluate works in the caller's TBB arena.
 class PlaceStencils {
 public:
     static constexpr int kRowDepth = 6;

@@ -24,7 +24,7 @@ namespace Osd = OpenSubdiv::Osd;
 /// Bits     The same for any number of threads, any sub-range and every x86-64 CPU. A compiled
 ///          table sums in another order than the table it came from, so the two differ in last
 ///          bits.
-/// Threads  Safe to call from many threads at once; works inside in the caller's TBB arena.
+/// Threads  Safe to call from many threads at once; works in the caller's TBB arena.
 /// Errors   All overloads: limn::Error with BadOption where a descriptor is inconsistent, lengths
 ///          differ, a buffer is null, a range leaves the table or the table lacks the derivatives
 ///          asked for. They return true; an empty table or range is done at once.

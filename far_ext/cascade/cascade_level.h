@@ -40,7 +40,7 @@ enum class BoundaryRule {
 };
 
 /// A level ready for sweeps: per row its ring of neighbours. Rows of each kind are numbered
-/// breadth-first along the rings, see rows/breadth_first.h.
+/// breadth-first along the rings, see far_ext/rows/breadth_first.h.
 ///
 /// Order    surface rows with a closed ring; with an open one; rows on creases; rows that stay.
 /// Ring     on triangles a, b, c ... counter-clockwise; on quads edge neighbours and opposite

@@ -49,8 +49,8 @@ SparseRows BuildD1(Far::TopologyLevel const& level);
 /// \throws Error  BadMesh: an edge with more than two faces, a vertex whose faces form more than
 ///                one fan, faces wound against each other (a face is named), a surface that cannot
 ///                be oriented.  BadOption: another scheme than Catmull-Clark and Loop, boundaries
-///                under `--boundary none`.  Unsupported: the rule `--triangles smooth` where a mesh
-///                has triangles
+///                that are not interpolated.  Unsupported: OpenSubdiv's smooth triangle rule where
+///                a mesh has triangles
 void CheckForms(Far::TopologyRefiner const& refiner);
 
 }  // namespace limn::far_ext

@@ -202,8 +202,8 @@ std::vector<GaussBonnetAudit> GaussBonnetAuditor::Run() {
             return _components.ofFace[face] == c;
         });
         if (audit.reason.empty() && numMissed) {
-            audit.reason = fmt::format(
-                "{} of its faces have no texel; a larger `size` resolves them", numMissed);
+            audit.reason =
+                fmt::format("{} of its faces have no texel; more texels resolve them", numMissed);
         }
         // Texel centres miss or double-count up to half a texel along chart borders.
         if (audit.reason.empty() && std::abs(sums[c].area - areas[c]) > 0.01 * areas[c]) {

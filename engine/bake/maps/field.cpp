@@ -103,8 +103,9 @@ private:
 std::unique_ptr<Map> MakeFieldMap(std::string const& name, MapOptions const& options,
                                   Model const&) {
     if (!options.field) {
-        throw Error(ErrorCode::BadOption,
-                    "`maps` field needs `field` EDGES.csv, as limn field writes it");
+        throw Error(
+            ErrorCode::BadOption,
+            "`maps` field needs `field`: a value per edge, from a file of lines v0,v1,value");
     }
     if (options.space == VectorSpace::Tangent) {
         throw Error(ErrorCode::BadOption,

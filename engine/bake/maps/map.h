@@ -17,7 +17,7 @@
 
 namespace limn::engine {
 
-// A map of a bake is a room of its own: what it has (MapTraits), what it needs of the surface, and
+// A map of a bake is a file of its own: what it has (MapTraits), what it needs of the surface, and
 // how its values come about (MapSampler). Whoever bakes, lays out, audits or shows maps asks these
 // and knows no map by its name. A new map is a file beside this one and a line in map_table.cpp.
 //

@@ -24,7 +24,7 @@ std::vector<std::unique_ptr<Map>> MakeMaps(MapOptions const& options, Model cons
 /// "mean, gaussian, ..., primvar:NAME"
 std::string ListMapNames();
 
-// One maker per room of this folder.
+// One maker per file of this folder.
 std::unique_ptr<Map> MakeCurvatureMap(std::string const&, MapOptions const&, Model const&);
 std::unique_ptr<Map> MakeVectorMap(std::string const&, MapOptions const&, Model const&);
 std::unique_ptr<Map> MakeDisplacementMap(std::string const&, MapOptions const&, Model const&);
