@@ -34,7 +34,6 @@ constexpr OptionName kOptionNames[] = {
     {"refinement", "--refinement"},
     {"rest", "--rest"},
     {"scheme", "--scheme"},
-    {"size", "--size"},
     {"solver", "--solver"},
     {"space", "--space"},
     {"spatialLevels", "--spatial-first"},
