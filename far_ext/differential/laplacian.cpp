@@ -103,6 +103,14 @@ std::vector<double> MeasureCotangents(Level const& level, Points points,
     return weights;
 }
 
+#if NANOFLANN_VERSION >= 0x150  // from there on these have other names
+using Neighbour = nanoflann::ResultItem<uint32_t, double>;
+nanoflann::SearchParameters const kUnsorted(0.0f, false);
+#else
+using Neighbour = std::pair<uint32_t, double>;
+nanoflann::SearchParams const kUnsorted(32, 0.0f, false);
+#endif
+
 /// Points as nanoflann reads them.
 struct PointCloud {
     Points points;
@@ -176,7 +184,7 @@ AreaLaplacian BuildHeatLaplacian(Level const& level, std::span<double const> pos
                                             PointCloud, 3, uint32_t>;
     PointCloud const cloud{points};
     Tree const tree(3, cloud);
-    std::vector<std::pair<uint32_t, double>> near;
+    std::vector<Neighbour> near;
     AreaLaplacian laplacian;
     laplacian.areas.assign(areas.size(), 1.0);
     double total = 0.0;
@@ -184,10 +192,10 @@ AreaLaplacian BuildHeatLaplacian(Level const& level, std::span<double const> pos
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
         if (AddBoundaryRow(level, vertex, laplacian.rows)) continue;
         if (level.GetVertexEdges(vertex).size() > 0) {
-            tree.radiusSearch(points[vertex].data(), squaredRadius, near,
-                              nanoflann::SearchParams(32, 0.0f, false));
-            std::sort(near.begin(),
-                      near.end());  // by index: the order of sums does not depend on the tree
+            tree.radiusSearch(points[vertex].data(), squaredRadius, near, kUnsorted);
+            // By index: the order of sums does not depend on the tree.
+            std::sort(near.begin(), near.end(),
+                      [](Neighbour const& a, Neighbour const& b) { return a.first < b.first; });
             double sum = 0.0;
             for (auto& [index, square] : near) {
                 square = index == static_cast<uint32_t>(vertex)
