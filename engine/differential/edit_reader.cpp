@@ -16,13 +16,31 @@ namespace {
 
 using Json = nlohmann::json;
 
+/// Text cut to what fits a line of a terminal.
+std::string Shorten(std::string const& text) {
+    constexpr size_t kLongest = 60;
+    return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
+}
+
+/// A value for a message: its beginning, on one line, in ASCII.
+std::string Quote(Json const& value) {
+    return Shorten(value.dump(-1, ' ', /*ensure_ascii=*/true, Json::error_handler_t::replace));
+}
+
 class EditReader {
 public:
     explicit EditReader(std::string const& path) : _path(path) {}
 
     CurvatureEdit Read() const {
         InputFile const file(_path);
-        Json const json = Json::parse(file.GetBytes(), nullptr, /*allow_exceptions=*/false);
+        // Deep nesting would overflow the stack of whoever walks through the values.
+        auto const checkDepth = [&](int depth, Json::parse_event_t, Json&) {
+            if (depth > kDeepest)
+                Refuse(
+                    fmt::format("values are nested more than {} deep; an edit's are 4", kDeepest));
+            return true;
+        };
+        Json const json = Json::parse(file.GetBytes(), checkDepth, /*allow_exceptions=*/false);
         if (!json.is_object()) Refuse("this is no JSON object");
         CurvatureEdit edit;
         for (auto const& [key, value] : json.items()) {
@@ -39,16 +57,19 @@ public:
                 }
             } else if (key == "filter") {
                 if (value != "polarise")
-                    Refuse(fmt::format("filter is {}; 'polarise' is possible", value.dump()));
+                    Refuse(fmt::format("filter is {}; 'polarise' is possible", Quote(value)));
                 edit.isPolarised = true;
             } else {
-                Refuse(fmt::format("key '{}' is not known; curvature, rotate and filter are", key));
+                Refuse(fmt::format("key {} is not known; curvature, rotate and filter are",
+                                   Quote(key)));
             }
         }
         return edit;
     }
 
 private:
+    static constexpr int kDeepest = 16;
+
     [[noreturn]] void Refuse(std::string const& what) const {
         throw Error(ErrorCode::BadMesh, fmt::format("{}: {}", _path, what));
     }
@@ -61,7 +82,7 @@ private:
     /// All keys that are needed have been found; there must be no others.
     void CheckKeys(std::string const& key, Json const& entry, size_t count) const {
         if (entry.size() != count)
-            Refuse(fmt::format("'{}': {} has unknown keys", key, entry.dump()));
+            Refuse(fmt::format("'{}': {} has unknown keys", key, Quote(entry)));
     }
 
     Index VertexOf(std::string const& key, Json const& entry) const {
@@ -74,7 +95,7 @@ private:
 
     double NumberOf(std::string const& key, Json const& entry, char const* name) const {
         if (!entry.is_object() || !entry.contains(name) || !entry[name].is_number()) {
-            Refuse(fmt::format("'{}': {} has no number '{}'", key, entry.dump(), name));
+            Refuse(fmt::format("'{}': {} has no number '{}'", key, Quote(entry), name));
         }
         return entry[name].get<double>();
     }
@@ -88,7 +109,7 @@ private:
             axis[c] = number.is_number() ? number.get<double>() : 0.0;
         }
         if (!(std::hypot(axis[0], axis[1], axis[2]) > 0.0)) {
-            Refuse(fmt::format("'rotate': {} has no axis of three numbers", entry.dump()));
+            Refuse(fmt::format("'rotate': {} has no axis of three numbers", Quote(entry)));
         }
         return axis;
     }

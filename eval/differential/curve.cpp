@@ -49,8 +49,10 @@ std::vector<DoubleLanes> FindCurveDeltas(Curve const& curve) {
     deltas.reserve(curve.points.size());
     int const size = static_cast<int>(curve.points.size());
     for (int i = 0; i < size; ++i) {
-        deltas.push_back(GetPoint(curve, i) -
-                         0.5 * (GetPoint(curve, i - 1) + GetPoint(curve, i + 1)));
+        DoubleLanes const point = GetPoint(curve, i);
+        // Differences: the same digits however far from the origin the curve lies.
+        deltas.push_back(0.5 *
+                         ((point - GetPoint(curve, i - 1)) + (point - GetPoint(curve, i + 1))));
     }
     if (!curve.isClosed && size > 2) {
         deltas.front() = deltas[1];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "eval/differential/dirmag.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Core>
@@ -16,6 +17,10 @@ namespace {
 using Vector = Eigen::Vector3d;
 using far_ext::MutablePoints;
 using far_ext::Points;
+
+/// Of the longest coordinate: what is shorter is rounding, the more the farther from the origin the
+/// mesh lies, and points anywhere. Its direction would count in means as much as any other.
+constexpr double kFlat = 1e-9;
 
 /// The tangent at unit vector q along which the great circle to unit vector n runs, as long as the
 /// arc.
@@ -83,6 +88,8 @@ DirMag SplitDirMag(Far::TopologyLevel const& level, std::span<double const> posi
                    std::span<double const> deltas) {
     DirMag split{{}, FindAngleNormals(level, positions), 0.0};
     Points const points(deltas);
+    double longest = 0.0;
+    for (size_t i = 0; i < points.GetCount(); ++i) longest = std::max(longest, points[i].norm());
     MutablePoints const directions(split.directions);
     double tangential = 0.0, all = 0.0;
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
@@ -92,7 +99,7 @@ DirMag SplitDirMag(Far::TopologyLevel const& level, std::span<double const> posi
         all += delta.squaredNorm();
         double const magnitude = along > 0.0 ? length : -length;
         split.magnitudes.push_back(magnitude);
-        if (length > 0.0) directions[vertex] = delta / magnitude;
+        if (length > kFlat * longest) directions[vertex] = delta / magnitude;
     }
     split.tangentialShare = all > 0.0 ? std::sqrt(tangential / all) : 0.0;
     return split;

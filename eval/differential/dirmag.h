@@ -29,7 +29,8 @@ constexpr double kDirMagLimit = 0.6;
 std::vector<double> FindAngleNormals(Far::TopologyLevel const& level,
                                      std::span<double const> positions);
 
-/// Splits by angle-weighted normals; where delta is 0 the direction is that normal.
+/// Splits by angle-weighted normals; where delta is 0, or below 1e-9 of the longest, the direction
+/// is that normal.
 ///
 /// Source  [Zhu11] Sec. 3.4
 DirMag SplitDirMag(Far::TopologyLevel const& level, std::span<double const> positions,

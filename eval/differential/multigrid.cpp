@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -70,6 +71,32 @@ std::vector<Scalar> Cast(std::vector<double> const& values) {
     return {values.begin(), values.end()};
 }
 
+/// a / b per lane; 0 where there is nothing left to divide by.
+DoubleLanes Divide(DoubleLanes const& a, DoubleLanes const& b) {
+    return (b > 0.0).select(a / (b > 0.0).select(b, 1.0), 0.0);
+}
+
+/// What a number is changed by at most, relatively, when it becomes a double.
+constexpr double kHalfDigit = 0x1p-53;
+
+/// Row i of G x, and the square of what it changes by when each number of x becomes a double,
+/// errors taken for independent ones of the largest size.
+struct ImageOfRow {
+    DoubleLanes value, rounding;
+};
+
+/// Lengths of a projected right-hand side, of a residual, and of what rounding the solution may
+/// have put into it.
+struct Misfit {
+    double rightSide, residual, rounding;
+};
+
+[[noreturn]] void RefuseAnchors() {
+    throw Error(ErrorCode::BadOption,
+                "Multigrid::SetAnchors: one vertex of each singular block is needed, in their "
+                "order");
+}
+
 }  // namespace
 
 struct Multigrid::Implementation {
@@ -80,77 +107,134 @@ struct Multigrid::Implementation {
         size_t const numRows = GetFinest().GetNumRows();
         for (auto* rows : {&x, &residual, &direction, &image})
             rows->assign(numRows, DoubleLanes::Zero());
+        for (auto const& block : GetFinest().blocks) anchors.push_back(block.begin);
+        means.resize(anchors.size());
     }
 
     MultigridLevel const& GetFinest() const { return levels.back(); }
+    bool IsFree(MultigridLevel::Block const& block) const {
+        return block.isSingular && areConstantsFree;
+    }
     DoubleLanes ReadRow(std::span<double const> values, Index row) const {
         auto const p = far_ext::Points(values)[GetFinest().vertices[row]];
         return {p[0], p[1], p[2], 0.0};
     }
-    DoubleLanes Apply(std::vector<DoubleLanes> const& rows, Index row) const {
-        return ApplyRow(GetFinest(), weights, rows.data(), row);
-    }
 
     std::vector<DoubleLanes> FindMeans(std::span<double const> rightSide) const;
-    double FormResidual(std::span<double const> rightSide, std::vector<DoubleLanes> const& means);
+    ImageOfRow ApplyByDifferences(Index row) const;
+    Misfit Measure(std::span<double const> rightSide,
+                   std::vector<DoubleLanes> const& meansOfRightSide,
+                   std::span<double const> solution);
+    int FindCorrection(double goal, int maxIterations);
+    DoubleLanes Advance(DoubleLanes const& step);
     DoubleLanes Precondition(DoubleLanes const& scale);
     void Turn(DoubleLanes const& scale, DoubleLanes const& momentum);
+    void Correct(std::span<double> solution) const;
 
     std::vector<MultigridLevel> levels;
     VCycle cycle;
     RowWeights<double> weights;  // of the finest level
     bool areConstantsFree = true;
+    std::vector<Index> anchors;  // per block, its row
     std::vector<DoubleLanes> x, residual, direction,
-        image;              // per row; those of fixed vertices are zero but in x
-    DoubleLanes curvature;  // direction . image, last
+        image;                       // per row; those of fixed vertices are zero but in x
+    std::vector<DoubleLanes> means;  // per block: of the residual, where constants are free
+    DoubleLanes curvature;           // direction . image, last
 };
-
-namespace {
-
-/// a / b per lane; 0 where there is nothing left to divide by.
-DoubleLanes Divide(DoubleLanes const& a, DoubleLanes const& b) {
-    return (b > 0.0).select(a / (b > 0.0).select(b, 1.0), 0.0);
-}
-
-}  // namespace
 
 /// Per block, the part of the right-hand side that no solution has: its mean where constants are
 /// free.
 std::vector<DoubleLanes> Multigrid::Implementation::FindMeans(
     std::span<double const> rightSide) const {
-    std::vector<DoubleLanes> means;
+    std::vector<DoubleLanes> found;
     for (auto const& block : GetFinest().blocks) {
         Index const size = block.end - block.begin;
-        bool const isProjected = block.isSingular && areConstantsFree;
-        means.push_back(DoubleLanes::Zero());
-        if (isProjected)
-            means.back() =
+        found.push_back(DoubleLanes::Zero());
+        if (IsFree(block))
+            found.back() =
                 SumRows(size, [&](Index i) { return ReadRow(rightSide, block.begin + i); }) / size;
     }
-    return means;
+    return found;
 }
 
-/// residual = b - G x with the projected b. \return |b|
-double Multigrid::Implementation::FormResidual(std::span<double const> rightSide,
-                                               std::vector<DoubleLanes> const& means) {
-    DoubleLanes norm = DoubleLanes::Zero();
-    for (size_t k = 0; k < means.size(); ++k) {
+/// Row i of G x. Differences of neighbours have no rounding errors but those of x itself, however
+/// far from the origin they lie.
+ImageOfRow Multigrid::Implementation::ApplyByDifferences(Index row) const {
+    MultigridLevel const& level = GetFinest();
+    double const diagonal = GetDiagonal(level, weights, row);
+    ImageOfRow found{DoubleLanes::Zero(), (diagonal * x[row]).square()};
+    double mass = diagonal;
+    for (int k = level.offsets[row]; k < level.offsets[row + 1]; ++k) {
+        DoubleLanes const& other = x[level.neighbours[k]];
+        double const weight = weights.entries.empty() ? 1.0 : weights.entries[k];
+        found.value += weight * (x[row] - other);
+        found.rounding += (weight * other).square();
+        mass -= weight;
+    }
+    if (!areConstantsFree) found.value += mass * x[row];
+    found.rounding *= kHalfDigit * kHalfDigit;
+    return found;
+}
+
+/// Loads x and forms residual = b - G x with the projected b.
+Misfit Multigrid::Implementation::Measure(std::span<double const> rightSide,
+                                          std::vector<DoubleLanes> const& meansOfRightSide,
+                                          std::span<double const> solution) {
+    ForEachRow(GetFinest().GetNumRows(), [&](Index row) { x[row] = ReadRow(solution, row); });
+    using Squares = Eigen::Array<double, 4, 3>;
+    Squares sum = Squares::Zero();
+    for (size_t k = 0; k < meansOfRightSide.size(); ++k) {
         auto const& block = GetFinest().blocks[k];
-        norm += SumRows(block.end - block.begin, [&](Index i) -> DoubleLanes {
-            DoubleLanes const b = ReadRow(rightSide, block.begin + i) - means[k];
-            residual[block.begin + i] = b - Apply(x, block.begin + i);
-            return b * b;
+        sum += SumRows(block.end - block.begin, [&](Index i) -> Squares {
+            Index const row = block.begin + i;
+            DoubleLanes const b = ReadRow(rightSide, row) - meansOfRightSide[k];
+            ImageOfRow const found = ApplyByDifferences(row);
+            residual[row] = b - found.value;
+            Squares squares;
+            squares << b.square(), residual[row].square(), found.rounding;
+            return squares;
         });
     }
-    return std::sqrt(norm.sum());
+    auto const norm = [&](Index column) { return std::sqrt(sum.col(column).sum()); };
+    return {norm(0), norm(1), norm(2)};
+}
+
+/// x += step * direction, and what that does to the residual. Where constants are free its mean is
+/// nothing but rounding, which no step takes away and each one multiplies; it is put aside in
+/// `means`. \return what the residual without its means has for sums of squares
+DoubleLanes Multigrid::Implementation::Advance(DoubleLanes const& step) {
+    DoubleLanes squares = DoubleLanes::Zero();
+    using Sums = Eigen::Array<double, 4, 2>;
+    for (size_t k = 0; k < means.size(); ++k) {
+        auto const& block = GetFinest().blocks[k];
+        Index const size = block.end - block.begin;
+        Sums const sums = SumRows(size, [&](Index i) -> Sums {
+            Index const row = block.begin + i;
+            x[row] += step * direction[row];
+            residual[row] -= step * image[row];
+            Sums terms;
+            terms << residual[row], residual[row].square();
+            return terms;
+        });
+        means[k].setZero();
+        if (IsFree(block)) means[k] = sums.col(0) / size;
+        squares += (sums.col(1) - size * means[k].square()).max(0.0);
+    }
+    return squares;
 }
 
 /// Runs the cycle on the residual times `scale`, which keeps floats in range. \return residual .
 /// result / scale
 DoubleLanes Multigrid::Implementation::Precondition(DoubleLanes const& scale) {
     auto& scaled = cycle.GetRightSide();
-    ForEachRow(GetFinest().numUnknowns,
-               [&](Index row) { scaled[row] = (residual[row] * scale).cast<float>(); });
+    for (size_t k = 0; k < means.size(); ++k) {
+        auto const& block = GetFinest().blocks[k];
+        ForEachRow(block.end - block.begin, [&](Index i) {
+            Index const row = block.begin + i;
+            residual[row] -= means[k];
+            scaled[row] = (residual[row] * scale).cast<float>();
+        });
+    }
     auto const& z = cycle.Run();
     return Divide(
         SumRows(GetFinest().numUnknowns,
@@ -166,50 +250,122 @@ void Multigrid::Implementation::Turn(DoubleLanes const& scale, DoubleLanes const
         direction[row] = unscale * z[row].cast<double>() + momentum * direction[row];
     });
     curvature = SumRows(GetFinest().numUnknowns, [&](Index row) -> DoubleLanes {
-        image[row] = Apply(direction, row);
+        image[row] = ApplyRow(GetFinest(), weights, direction.data(), row);
         return image[row] * direction[row];
     });
+}
+
+/// Conjugate gradients from x = 0 for the residual, until they have brought it below `goal`. Each
+/// coordinate has steps of its own, and rests when it is far below: the others' goal may be less
+/// than its rounding errors. \return iterations
+int Multigrid::Implementation::FindCorrection(double goal, int maxIterations) {
+    constexpr double kRest = 0.1;  // of the goal
+    for (auto* rows : {&x, &direction, &image}) {
+        ForEachRow(GetFinest().GetNumRows(), [&](Index row) { (*rows)[row].setZero(); });
+    }
+    DoubleLanes squares = Advance(DoubleLanes::Zero()), product = DoubleLanes::Zero();
+    int numIterations = 0;
+    while (std::sqrt(squares.sum()) > goal && numIterations < maxIterations) {
+        DoubleLanes const moved = (squares.sqrt() > kRest * goal).select(squares, 0.0);
+        DoubleLanes const scale = Divide(DoubleLanes::Ones(), moved.sqrt());
+        DoubleLanes const nextProduct = Precondition(scale);
+        Turn(scale, Divide(nextProduct, product));
+        product = nextProduct;
+        squares = Advance(Divide(product, curvature));
+        ++numIterations;
+    }
+    return numIterations;
+}
+
+/// Adds the correction x, less that of its anchor where constants are free. Sums are made near the
+/// anchor: whatever its distance from the origin, numbers are rounded to it once.
+void Multigrid::Implementation::Correct(std::span<double> solution) const {
+    far_ext::MutablePoints const points(solution);
+    for (size_t k = 0; k < anchors.size(); ++k) {
+        auto const& block = GetFinest().blocks[k];
+        DoubleLanes place = DoubleLanes::Zero(), shift = DoubleLanes::Zero();
+        if (IsFree(block)) {
+            place = ReadRow(solution, anchors[k]);
+            shift = x[anchors[k]];
+        }
+        ForEachRow(block.end - block.begin, [&](Index i) {
+            Index const row = block.begin + i;
+            DoubleLanes const offset = (ReadRow(solution, row) - place) + (x[row] - shift);
+            points[GetFinest().vertices[row]] = (place + offset).head<3>();
+        });
+    }
 }
 
 MultigridReport Multigrid::Solve(std::span<double const> rightSide, std::span<double> solution,
                                  MultigridOptions const& options) {
     auto& self = *_implementation;
-    MultigridLevel const& level = self.GetFinest();
-    ForEachRow(level.GetNumRows(), [&](Index row) { self.x[row] = self.ReadRow(solution, row); });
     auto const means = self.FindMeans(rightSide);
-    double const size = self.FormResidual(rightSide, means);
-    DoubleLanes squares = SumRows(
-        level.numUnknowns, [&](Index row) -> DoubleLanes { return self.residual[row].square(); });
-    double const unit =
-        size > 0.0 ? size : std::sqrt(squares.sum());  // b = 0: relative to where it started
-    double const goal = options.tolerance * unit;
-
+    Misfit misfit = self.Measure(rightSide, means, solution);
+    // Where b = 0 relative to where it started.
+    double const unit = misfit.rightSide > 0.0 ? misfit.rightSide : misfit.residual;
     MultigridReport report;
-    report.converged = std::sqrt(squares.sum()) <= goal;
-    ForEachRow(level.GetNumRows(), [&](Index row) { self.direction[row].setZero(); });
-    DoubleLanes product = DoubleLanes::Zero();
-    while (!report.converged && report.iterations < options.maxIterations) {
-        DoubleLanes const scale = Divide(DoubleLanes::Ones(), squares.sqrt());
-        DoubleLanes const nextProduct = self.Precondition(scale);
-        self.Turn(scale, Divide(nextProduct, product));
-        product = nextProduct;
-        DoubleLanes const step = Divide(product, self.curvature);
-        squares = SumRows(level.numUnknowns, [&](Index row) -> DoubleLanes {
-            self.x[row] += step * self.direction[row];
-            self.residual[row] -= step * self.image[row];
-            return self.residual[row].square();
-        });
-        ++report.iterations;
-        report.converged = std::sqrt(squares.sum()) <= goal;
+    auto const judge = [&] {
+        report.residual = unit > 0.0 ? misfit.residual / unit : 0.0;
+        report.rounding = unit > 0.0 ? misfit.rounding / unit : 0.0;
+        report.converged = report.residual <= options.tolerance + report.rounding;
+    };
+    judge();
+    bool isDone = report.residual <= options.tolerance;
+    double before = std::numeric_limits<double>::infinity();
+    // The residual that conjugate gradients carry along drifts from the solution's own, which
+    // decides: where it has gained and is not there yet they start again from it.
+    while (!isDone && report.iterations < options.maxIterations && report.residual < 0.5 * before) {
+        before = report.residual;
+        report.iterations += self.FindCorrection(options.tolerance * unit,
+                                                 options.maxIterations - report.iterations);
+        self.Correct(solution);
+        misfit = self.Measure(rightSide, means, solution);
+        judge();
+        isDone = report.converged;
     }
-    self.FormResidual(rightSide, means);
-    squares = SumRows(level.numUnknowns,
-                      [&](Index row) -> DoubleLanes { return self.residual[row].square(); });
-    report.residual = unit > 0.0 ? std::sqrt(squares.sum()) / unit : 0.0;
-    far_ext::MutablePoints const points(solution);
-    ForEachRow(level.numUnknowns,
-               [&](Index row) { points[level.vertices[row]] = self.x[row].head<3>(); });
     return report;
+}
+
+void Multigrid::Precondition(std::vector<DoubleLanes> const& rightSide,
+                             std::vector<DoubleLanes>& result) {
+    auto& self = *_implementation;
+    MultigridLevel const& level = self.GetFinest();
+    DoubleLanes const squares = SumRows(
+        level.numUnknowns, [&](Index row) -> DoubleLanes { return rightSide[row].square(); });
+    DoubleLanes const scale = Divide(DoubleLanes::Ones(), squares.sqrt());  // keeps floats in range
+    auto& scaled = self.cycle.GetRightSide();
+    ForEachRow(level.numUnknowns,
+               [&](Index row) { scaled[row] = (rightSide[row] * scale).cast<float>(); });
+    auto const& z = self.cycle.Run();
+    DoubleLanes const unscale = squares.sqrt();
+    ForEachRow(level.numUnknowns,
+               [&](Index row) { result[row] = unscale * z[row].cast<double>(); });
+}
+
+void Multigrid::HoldAnchors(std::vector<DoubleLanes>& rows) const {
+    auto const& self = *_implementation;
+    for (size_t k = 0; k < self.anchors.size(); ++k) {
+        auto const& block = self.GetFinest().blocks[k];
+        if (!self.IsFree(block)) continue;
+        DoubleLanes const shift = rows[self.anchors[k]];
+        ForEachRow(block.end - block.begin, [&](Index i) { rows[block.begin + i] -= shift; });
+    }
+}
+
+void Multigrid::SetAnchors(std::span<Index const> vertices) {
+    auto& self = *_implementation;
+    auto const& rows = self.GetFinest().vertices;
+    size_t next = 0;
+    for (size_t k = 0; k < self.anchors.size(); ++k) {
+        auto const& block = self.GetFinest().blocks[k];
+        if (!block.isSingular) continue;
+        if (next == vertices.size()) RefuseAnchors();
+        auto const begin = rows.begin() + block.begin, end = rows.begin() + block.end;
+        auto const found = std::find(begin, end, vertices[next++]);
+        if (found == end) RefuseAnchors();
+        self.anchors[k] = static_cast<Index>(found - rows.begin());
+    }
+    if (next != vertices.size()) RefuseAnchors();
 }
 
 Multigrid::Multigrid(Far::TopologyRefiner const& refiner, FixedVertices fixed, int coarsest)

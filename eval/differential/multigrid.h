@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "eval/differential/lanes.h"
 #include "eval/differential/multigrid_levels.h"
 
 namespace limn::eval {
@@ -14,7 +15,10 @@ struct MultigridReport {
     int iterations = 0;
     double residual = 0.0;  ///< |b - G x| / |b| of the solution handed back; where b = 0, over what
                             ///< it started from
-    bool converged = false;
+    /// What the residual may be because the solution's numbers are doubles: grows with the distance
+    /// from the origin, and by 4 from level to level where b is 4^-k of a right-hand side.
+    double rounding = 0.0;
+    bool converged = false;  ///< residual <= tolerance + rounding
 };
 
 struct MultigridOptions {
@@ -36,7 +40,8 @@ struct EdgeWeights {
 /// = 1 and m = 0, and no level stores any.
 ///
 /// Singular  Where constants are free (MultigridLevel::Block), b is projected onto the range (b
-///           less its mean) and the solution keeps the mean it came with.
+///           less its mean), and one vertex, the block's anchor, keeps the value it came with.
+/// Origin    What all of a solution has in common costs no digits but those of its own numbers.
 /// Threads   Solve runs on the calling arena's threads, with the same bits whatever their number;
 ///           one Solve at a time.
 /// Memory    About 250 bytes per unknown on triangles.
@@ -56,11 +61,24 @@ public:
     ///                without a positive diagonal
     void SetWeights(Far::TopologyRefiner const& refiner, std::vector<EdgeWeights> const& weights);
 
+    /// Chooses anchors; until then they are the first rows.
+    ///
+    /// \param vertices  one of the last level per singular block, in the order of blocks
+    void SetAnchors(std::span<Index const> vertices);
+
     /// \param rightSide  3 per vertex of the last level; entries of fixed vertices are not read
     /// \param solution   3 per vertex: what to start from, and the result. Fixed vertices keep
     ///                   theirs, and their neighbours see it
     MultigridReport Solve(std::span<double const> rightSide, std::span<double> solution,
                           MultigridOptions const& options = {});
+
+    /// One V-cycle: an approximate inverse of G, the same symmetric map for every right-hand side.
+    ///
+    /// \param rightSide, result  in rows of the last level; those of fixed vertices are not used
+    void Precondition(std::vector<DoubleLanes> const& rightSide, std::vector<DoubleLanes>& result);
+
+    /// Takes constants from rows of the last level where they are free, so that anchors have 0.
+    void HoldAnchors(std::vector<DoubleLanes>& rows) const;
 
     std::vector<MultigridLevel> const& GetLevels() const;
 

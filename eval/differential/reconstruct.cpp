@@ -87,6 +87,7 @@ void Reconstructor::ChooseHandles(Far::TopologyRefiner const& refiner,
         chosen[owner] = handle;
         _handles[owner] = descendant;
     }
+    _multigrid.SetAnchors(std::span(_handles).subspan(_loops.size()));
 }
 
 /// A boundary loop as a curve, moved so that its handle stays. \return the compatibility defect
@@ -139,9 +140,6 @@ ReconstructReport Reconstructor::Solve(std::span<double const> deltas, std::span
         Set(rightSide, vertex,
             static_cast<double>(level.offsets[row + 1] - level.offsets[row]) * Get(deltas, vertex));
     });
-    std::vector<DoubleLanes> places;
-    places.reserve(_handles.size());
-    for (Index handle : _handles) places.push_back(Get(positions, handle));
     for (auto const& block : level.blocks) {
         if (block.isSingular)
             report.compatibilityDefect =
@@ -150,18 +148,8 @@ ReconstructReport Reconstructor::Solve(std::span<double const> deltas, std::span
     MultigridReport const solve = _multigrid.Solve(rightSide, positions, options);
     report.iterations = solve.iterations;
     report.residual = solve.residual;
+    report.rounding = solve.rounding;
     report.converged = solve.converged;
-    size_t handle = _loops.size();
-    for (auto const& block : level.blocks) {
-        if (!block.isSingular) continue;
-        DoubleLanes const shift = places[handle] - Get(positions, _handles[handle]);
-        ForEachRow(block.end - block.begin, [&](Index i) {
-            Index const vertex = level.vertices[block.begin + i];
-            Set(positions, vertex, Get(positions, vertex) + shift);
-        });
-        Set(positions, _handles[handle], places[handle]);
-        ++handle;
-    }
     return report;
 }
 

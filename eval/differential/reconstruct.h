@@ -10,8 +10,10 @@ namespace limn::eval {
 
 struct ReconstructReport {
     int iterations = 0;
-    double residual =
-        0.0;  ///< |L V - Delta| / |Delta|, rows weighted by their degree, after projection
+    /// |L V - Delta| / |Delta| of the positions handed back, over vertices inside, rows weighted by
+    /// their degree, after projection.
+    double residual = 0.0;
+    double rounding = 0.0;  ///< what of it the positions' being doubles may account for
     /// What no mesh can have of the differential coordinates and projection takes away: the largest
     /// of |sum d Delta| / sum d |Delta| over closed components and boundary loops.
     double compatibilityDefect = 0.0;

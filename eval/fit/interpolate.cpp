@@ -249,10 +249,11 @@ SolveReport Interpolator::SolveBlock(LimitProblem& problem,
     for (auto const& component : _singular.Get()) {
         double const defect =
             SingularComponents::FindDefect(component, data, problem.length) / problem.size;
+        bool const isInReach = defect < problem.tolerance;
         report.singularComponents.push_back({FindFirstVertex(component),
                                              static_cast<Index>(component.vertices.size()), defect,
-                                             defect <= 0.5 * problem.tolerance});
-        worstDefect = std::max(worstDefect, defect);
+                                             isInReach});
+        if (isInReach) worstDefect = std::max(worstDefect, defect);
     }
     if (!_singular.Get().empty()) {
         projected.assign(data,
@@ -260,8 +261,7 @@ SolveReport Interpolator::SolveBlock(LimitProblem& problem,
         _singular.Project(projected.data(), problem.length);
         std::copy(projected.begin(), projected.end(), problem.solution);
         problem.data = projected.data();
-        // What cannot be reached comes on top.
-        if (worstDefect <= 0.5 * problem.tolerance) problem.tolerance -= worstDefect;
+        problem.tolerance -= worstDefect;  // what cannot be reached comes on top
     }
     SolveCurves(problem);
     report.method =

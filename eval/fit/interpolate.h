@@ -41,7 +41,7 @@ struct InterpolateOptions {
 struct SingularReport {
     Index firstVertex = 0, numVertices = 0;
     double defect = 0.0;  ///< what no P can reach, over the diagonal of M's bounding box
-    bool isSolved = false;
+    bool isSolved = false;  ///< the defect is below the tolerance, the rest solved to what is left
 };
 
 /// How a solve went. Not converging is an answer: the solution is then the best there is.

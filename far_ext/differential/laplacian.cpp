@@ -2,7 +2,6 @@
 #include "far_ext/differential/laplacian.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,6 +9,7 @@
 #include <fmt/format.h>
 #include <nanoflann.hpp>
 
+#include "far_ext/differential/triangle.h"
 #include "far_ext/error.h"
 #include "far_ext/rows/points.h"
 #include "far_ext/topology/boundary.h"
@@ -30,59 +30,6 @@ bool AddBoundaryRow(Level const& level, Index vertex, SparseRows& rows) {
     row.Add(b, -0.5);
     rows.AddRow(row);
     return true;
-}
-
-/// A triangle's vertices, cotangents and squared sides; side k lies opposite corner k.
-struct Triangle {
-    std::array<Index, 3> vertices;
-    std::array<double, 3> cotangents, squares;
-    double area;
-};
-
-Triangle MeasureTriangle(Level const& level, Points points, Index face) {
-    auto const vertices = level.GetFaceVertices(face);
-    if (vertices.size() != 3) {
-        throw Error(ErrorCode::Unsupported,
-                    fmt::format("face {} has {} corners; this Laplacian needs triangles", face,
-                                vertices.size()));
-    }
-    Triangle triangle{{vertices[0], vertices[1], vertices[2]}, {}, {}, 0.0};
-    std::array<double, 3> dots;
-    for (size_t k = 0; k < 3; ++k) {
-        auto const corner = points[triangle.vertices[k]];
-        Eigen::Vector3d const a = points[triangle.vertices[(k + 1) % 3]] - corner,
-                              b = points[triangle.vertices[(k + 2) % 3]] - corner;
-        dots[k] = a.dot(b);
-        double const square = a.squaredNorm();
-        triangle.squares[(k + 2) % 3] = square;
-        triangle.area =
-            0.5 * std::sqrt(std::max(0.0, square * b.squaredNorm() - dots[k] * dots[k]));
-    }
-    double const longest =
-        std::max({triangle.squares[0], triangle.squares[1], triangle.squares[2]});
-    if (!(triangle.area > 1e-12 * longest)) {  // below, cotangents are rounding errors
-        throw Error(ErrorCode::BadMesh, fmt::format("face {} (vertices {}, {}, {}) has no area, so "
-                                                    "that its angles are not defined; move a "
-                                                    "vertex or use the combinatorial Laplacian",
-                                                    face, vertices[0], vertices[1], vertices[2]));
-    }
-    for (size_t k = 0; k < 3; ++k) triangle.cotangents[k] = dots[k] / (2.0 * triangle.area);
-    return triangle;
-}
-
-/// The share of a triangle's area that is nearest to each corner; in an obtuse one half at the wide
-/// angle and a quarter at the others.
-std::array<double, 3> SplitArea(Triangle const& triangle) {
-    std::array<double, 3> shares;
-    auto const& cot = triangle.cotangents;
-    size_t const widest = std::min_element(cot.begin(), cot.end()) - cot.begin();
-    for (size_t k = 0; k < 3; ++k) {
-        size_t const p = (k + 1) % 3, q = (k + 2) % 3;
-        shares[k] = cot[widest] < 0.0
-                        ? triangle.area * (k == widest ? 0.5 : 0.25)
-                        : (triangle.squares[p] * cot[p] + triangle.squares[q] * cot[q]) / 8.0;
-    }
-    return shares;
 }
 
 /// Cotangent weights per edge, and mixed Voronoi areas per vertex where asked for.
@@ -141,6 +88,17 @@ SparseRows BuildCombinatorialLaplacian(Level const& level) {
     return rows;
 }
 
+std::vector<double> FindDeltas(SparseRows const& laplacian, std::span<double const> positions) {
+    Points const points(positions);
+    std::vector<double> deltas(positions.size(), 0.0);
+    for (Index row = 0; row < laplacian.GetNumRows(); ++row) {
+        auto delta = MutablePoints(deltas)[row];
+        for (int k = laplacian.offsets[row]; k < laplacian.offsets[row + 1]; ++k)
+            delta += laplacian.weights[k] * (points[laplacian.indices[k]] - points[row]);
+    }
+    return deltas;
+}
+
 AreaLaplacian BuildCotangentLaplacian(Level const& level, std::span<double const> positions) {
     CheckBoundary(level);
     AreaLaplacian laplacian;
@@ -165,16 +123,21 @@ std::vector<double> FindCotangentWeights(Level const& level, std::span<double co
     return MeasureCotangents(level, positions, nullptr);
 }
 
+std::vector<double> FindVertexAreas(Level const& level, std::span<double const> positions) {
+    std::vector<double> areas(level.GetNumVertices(), 0.0);
+    for (Index face = 0; face < level.GetNumFaces(); ++face) {
+        Triangle const triangle = MeasureTriangle(level, Points(positions), face);
+        for (Index vertex : triangle.vertices) areas[vertex] += triangle.area / 3.0;
+    }
+    return areas;
+}
+
 AreaLaplacian BuildHeatLaplacian(Level const& level, std::span<double const> positions,
                                  HeatKernel* kernel) {
     CheckBoundary(level);
     Points const points(positions);
     constexpr double kLeftOut = 1e-6;  // of the kernel's middle
-    std::vector<double> areas(level.GetNumVertices(), 0.0);
-    for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        Triangle const triangle = MeasureTriangle(level, points, face);
-        for (Index vertex : triangle.vertices) areas[vertex] += triangle.area / 3.0;
-    }
+    std::vector<double> const areas = FindVertexAreas(level, positions);
     double const edge = FindMeanEdgeLength(level, positions), time = edge * edge;
     double const squaredRadius = 4.0 * time * std::log(1.0 / kLeftOut),
                  scale = 1.0 / (4.0 * std::numbers::pi * time * time);

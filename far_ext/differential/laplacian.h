@@ -24,6 +24,10 @@ namespace limn::far_ext {
 /// Combinatorial: w_ij = 1/d over the d edges of vertex i, for faces of any size. No unit.
 SparseRows BuildCombinatorialLaplacian(Far::TopologyLevel const& level);
 
+/// The differential coordinates of points, 3 per vertex: sums of w_ij (v_i - v_j), so that a mesh
+/// far from the origin has those of the same mesh near it.
+std::vector<double> FindDeltas(SparseRows const& laplacian, std::span<double const> positions);
+
 /// A Laplacian that knows areas: delta_i = (1/area_i) * row i, about 2 H n for mean curvature H
 /// (1/length). Rows and areas of boundary vertices are those of the curve rule, and 1.
 struct AreaLaplacian {
@@ -44,6 +48,12 @@ AreaLaplacian BuildCotangentLaplacian(Far::TopologyLevel const& level,
 /// Its weights alone, per edge of the level.
 std::vector<double> FindCotangentWeights(Far::TopologyLevel const& level,
                                          std::span<double const> positions);
+
+/// A third of the areas of the triangles at each vertex.
+///
+/// \throws Error  as BuildCotangentLaplacian
+std::vector<double> FindVertexAreas(Far::TopologyLevel const& level,
+                                    std::span<double const> positions);
 
 /// How the mesh Laplace operator was cut off.
 struct HeatKernel {

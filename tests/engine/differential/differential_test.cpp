@@ -211,7 +211,7 @@ TEST(EditReader, WhatItCannotUseIsNamed) {
         "");
     EXPECT_EQ(refuse("{}"), "");
     EXPECT_NE(refuse("{\"curvature\": ").find("no JSON"), std::string::npos);
-    EXPECT_NE(refuse(R"({"curve": []})").find("key 'curve' is not known"), std::string::npos);
+    EXPECT_NE(refuse(R"({"curve": []})").find("key \"curve\" is not known"), std::string::npos);
     EXPECT_NE(refuse(R"({"filter": "smooth"})").find("'polarise' is possible"), std::string::npos);
     EXPECT_NE(refuse(R"({"curvature": [{"vertex": -1, "factor": 1}]})").find("no 0-based index"),
               std::string::npos);
@@ -224,6 +224,14 @@ TEST(EditReader, WhatItCannotUseIsNamed) {
         refuse(R"({"curvature": [{"vertex": 1, "factor": 1, "size": 2}]})").find("unknown keys"),
         std::string::npos);
     EXPECT_NE(refuse(R"({"curvature": 7})").find("no list"), std::string::npos);
+    EXPECT_NE(refuse(R"({"filter": )" + std::string(60000, '[') + std::string(60000, ']') + "}")
+                  .find("nested more than 16 deep"),
+              std::string::npos);
+    for (std::string const key : {"curvature", "filter", "rotate", "other\n"}) {
+        std::string const message =
+            refuse("{\"" + key + "\": [{\"vertex\": \"" + std::string(100000, 'x') + "\"}]}");
+        EXPECT_LT(message.size(), folder.GetPath().size() + 200) << key;
+    }
 }
 
 TEST(Polylines, WhatIsReadIsWritten) {

@@ -49,6 +49,27 @@ TEST(Curve, PolygonsShrinkByAKnownFactor) {
     }
 }
 
+// The digits that coordinates lose by their size are all that a translation costs; 2^-20 keeps
+// moved points exact.
+TEST(Curve, AMovedCurveGivesTheMovedResult) {
+    for (bool isClosed : {true, false}) {
+        Curve here = MakePolygon(9);
+        here.isClosed = isClosed;
+        for (DoubleLanes& p : here.points) p = (p * 0x1p20).round() / 0x1p20;
+        Curve there = here;
+        DoubleLanes const offset(30000.0, -125.0, 10.0, 0.0);
+        for (DoubleLanes& p : there.points) p += offset;
+        Curve const fine = eval::RefineCurveDifferentially(here, CurveRule::CubicBSpline, 5).curve,
+                    moved =
+                        eval::RefineCurveDifferentially(there, CurveRule::CubicBSpline, 5).curve;
+        for (size_t i = 0; i < fine.points.size(); ++i) {
+            EXPECT_LT((moved.points[i] - fine.points[i] - offset).abs().maxCoeff(),
+                      0x1p-53 * 8.0 * 30000.0)
+                << i;
+        }
+    }
+}
+
 // An open parabola has the same delta everywhere, so it is found again, its ends included, by both
 // rules.
 TEST(Curve, ParabolasAreReproduced) {

@@ -66,6 +66,35 @@ TEST(DirMag, TheTangentialShareIsMeasured) {
                 0.51, 0.02);
 }
 
+/// 7 x 7 points a third apart, flat but for one, moved along all axes.
+engine::Scene MakeBumpedPlane(double offset) {
+    std::vector<double> positions;
+    std::vector<std::vector<Index>> faces;
+    for (int i = 0; i < 49; ++i) {
+        double const x = i % 7 / 3.0, y = i / 7 / 3.0, z = i == 16 ? 0.5 : 0.0;
+        positions.insert(positions.end(), {x + offset, y + offset, z + offset});
+        if (i % 7 < 6 && i < 42) faces.push_back({i, i + 1, i + 8, i + 7});
+    }
+    return test::MakeScene(std::move(positions), faces, Sdc::SCHEME_CATMARK);
+}
+
+// Far from the origin a flat vertex' coordinate is rounding, which points anywhere; its direction
+// is the normal as before, so that means with its neighbours stay what they were.
+TEST(DirMag, FlatVerticesTakeTheNormalWhereverTheyAre) {
+    auto const split = [](double offset) {
+        auto const scene = MakeBumpedPlane(offset);
+        auto const refiner = test::MakeRefiner(scene, 0);
+        auto const level = refiner->GetLevel(0);
+        return eval::SplitDirMag(
+            level, scene.positions,
+            far_ext::FindDeltas(far_ext::BuildCombinatorialLaplacian(level), scene.positions));
+    };
+    auto const here = split(0.0), there = split(1e4 / 3.0);
+    EXPECT_LT(test::LargestDifference(here.directions, there.directions), 1e-9);
+    size_t const flat = 3 * 40;
+    EXPECT_EQ(std::abs(here.directions[flat + 2]), 1.0);
+}
+
 // Directions that cancel have no mean: the one of the largest weight stays, and nothing is not a
 // number.
 TEST(DirMag, OppositeDirectionsHaveAnAnswer) {

@@ -153,6 +153,39 @@ TEST(Multigrid, AFreeBoundaryConverges) {
     }
 }
 
+// One vertex of each closed component stays where it was, to the last bit, wherever that is: the
+// lowest row, or the one that is named.
+TEST(Multigrid, AnchorsStayWhereTheyWere) {
+    auto const refiner =
+        test::MakeRefiner(test::Join({test::MakeBipyramid(5), test::MakeBipyramid(7)}), 3);
+    eval::Multigrid multigrid(*refiner, FixedVertices::None);
+    auto const size = 3 * static_cast<size_t>(refiner->GetLevel(3).GetNumVertices());
+    auto const& graph = multigrid.GetLevels().back();
+    ASSERT_EQ(graph.blocks.size(), 2u);
+    std::vector<Index> anchors{graph.vertices[graph.blocks[0].begin],
+                               graph.vertices[graph.blocks[1].begin]};
+    auto const before = test::MakeNoise(size, 6);
+    for (int round = 0; round < 2; ++round) {
+        auto x = before;
+        for (double& value : x) value += 1e5;
+        auto const start = x;
+        EXPECT_TRUE(multigrid.Solve(test::MakeNoise(size, 7), x, {.tolerance = 1e-10}).converged);
+        for (Index anchor : anchors) {
+            for (size_t c = 0; c < 3; ++c) {
+                size_t const at = 3 * static_cast<size_t>(anchor) + c;
+                EXPECT_EQ(x[at], start[at]);
+            }
+        }
+        anchors = {graph.vertices[graph.blocks[0].end - 1],
+                   graph.vertices[graph.blocks[1].end - 3]};
+        multigrid.SetAnchors(anchors);
+    }
+    EXPECT_EQ(test::CodeOf([&] { multigrid.SetAnchors(std::span(anchors).first(1)); }),
+              ErrorCode::BadOption);
+    std::swap(anchors[0], anchors[1]);
+    EXPECT_EQ(test::CodeOf([&] { multigrid.SetAnchors(anchors); }), ErrorCode::BadOption);
+}
+
 // With masses and weights the equation is regular everywhere; the other road is a factorisation.
 TEST(Multigrid, AgreesWithCholesky) {
     auto const scene = test::LoadDifferential("icosa", Sdc::SCHEME_LOOP);

@@ -407,6 +407,32 @@ TEST(Singular, APerturbedCubeKeepsTheAlternatingResidual) {
     EXPECT_TRUE(Solve(scene, {.tolerance = 1e-10}, {.alpha = 0.5}).report.converged);
 }
 
+/// A cube of which nothing but the alternating part, +-(a, 0, 0) in turn, is out of reach; a is
+/// `share` of 1e-6 of the diagonal.
+engine::Scene MakeAlternatingCube(double share) {
+    engine::Scene scene = test::MakeCube();
+    double const part = share * 1e-6 * eval::FindSize(scene.positions, 3);
+    for (size_t i = 0; i < scene.positions.size(); i += 3) {
+        double const product = scene.positions[i] * scene.positions[i + 1] * scene.positions[i + 2];
+        scene.positions[i] += product > 0.0 ? part : -part;
+    }
+    return scene;
+}
+
+// The defect may take the whole of the tolerance; the rest is solved to what it leaves.
+TEST(Singular, TheDefectIsMeasuredAgainstTheWholeTolerance) {
+    for (double share : {0.1, 0.5, 0.88, 0.99, 1.01, 2.0}) {
+        engine::Scene const scene = MakeAlternatingCube(share);
+        for (SolveMethod method : kAllMethods) {
+            auto const report = Solve(scene, {.method = method, .tolerance = 1e-6}).report;
+            ASSERT_EQ(report.singularComponents.size(), 1u);
+            EXPECT_NEAR(report.singularComponents[0].defect, share * 1e-6, 1e-11);
+            EXPECT_EQ(report.singularComponents[0].isSolved, share < 1.0) << share;
+            EXPECT_EQ(report.converged, share < 1.0) << share << ' ' << GetName(method);
+        }
+    }
+}
+
 TEST(Singular, PrismsAreIfTheirSidesAreEven) {
     for (int n = 3; n <= 8; ++n) {
         auto const report = Solve(test::MakePrism(n)).report;
