@@ -12,6 +12,7 @@
 #include "engine/bake/maps/map_table.h"
 #include "engine/bake/strip_baker.h"
 #include "engine/bake/tile_job.h"
+#include "engine/scene/require_limit.h"
 #include "engine/scene/udim.h"
 #include "far_ext/error.h"
 
@@ -103,6 +104,7 @@ void WarnOf(BakeReport const& report, std::vector<std::string> movedPlaces, Mode
 
 BakeReport BakeTo(BakeDestination& destination, std::string const& pattern, Model const& model,
                   BakeOptions const& options, Job& job) {
+    RequireLimit(model);
     auto const maps = MakeMaps(options, model);
     BakeReport report;
     report.files = LayOutFiles(maps, pattern, options.hasCoverage);

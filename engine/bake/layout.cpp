@@ -70,6 +70,7 @@ std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, M
         kExrCompressionWords.GetWord(options.compression), options.hasMips, options.hasCoverage);
     text += fmt::format(" {} orientation={}", DescribeSubdivision(model.GetCage()),
                         kOrientationWords.GetWord(options.orientation));
+    if (model.GetWeld()) text += fmt::format(" weld={}", model.GetWeld()->tolerance);
     if (!options.groups.empty()) {
         std::set<std::string> const groups(options.groups.begin(), options.groups.end());
         text += fmt::format(" groups={}", fmt::join(groups, ","));

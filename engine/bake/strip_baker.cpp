@@ -2,6 +2,7 @@
 #include "engine/bake/strip_baker.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <set>
 
@@ -62,6 +63,27 @@ int FindUVChannel(Model const& model) {
                             model.GetPath()));
 }
 
+/// Texels are found in double, which at more than this many tiles from 1001 tells those of the
+/// largest images apart no more.
+constexpr double kFarthestUV = 1e4;
+
+/// Refuses the first baked face that reaches too far.
+void RefuseFarUVs(Model const& model, std::vector<char> const& isBaked) {
+    auto const& values = model.GetCage().fvarChannels[0].valueIndices;
+    size_t corner = 0;
+    for (Index face = 0; face < model.GetCage().GetNumFaces(); ++face) {
+        for (int i = 0; i < model.GetCage().faceSizes[face]; ++i, ++corner) {
+            double const* const uv = &model.GetUVs()[2 * static_cast<size_t>(values[corner])];
+            double const farthest = std::max(std::abs(uv[0]), std::abs(uv[1]));
+            if (!isBaked[face] || farthest <= kFarthestUV) continue;
+            throw Error(ErrorCode::BadMesh,
+                        fmt::format("{}: {} has a texture coordinate of {}; up to {} in magnitude "
+                                    "can be baked",
+                                    model.GetPath(), model.NameFace(face), farthest, kFarthestUV));
+        }
+    }
+}
+
 /// to[places[i]] = from[i], eight at a time where the places lie side by side.
 void Scatter(std::span<int const> places, float const* from, float* to) {
     constexpr size_t kGroup = 8;
@@ -107,6 +129,7 @@ StripBaker::StripBaker(Model const& model, BakeOptions const& options,
       _baked{model, _surface, _uvSurface, _isBaked, options.width, options.height},
       _hasTexels(model.GetCage().faceSizes.size()) {
     FindBakedFaces();
+    RefuseFarUVs(_model, _isBaked);
     for (auto const& map : maps) map->Prepare(_baked, job);
     ArrangePasses();
     FindBounds();

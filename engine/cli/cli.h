@@ -22,6 +22,7 @@ namespace limn::cli {
 struct CommonOptions {
     std::optional<std::string> scheme, boundary, fvar, creases, triangles;
     std::string reportPath;
+    std::optional<double> weld;  ///< the tolerance
     Orientation orientation = Orientation::Right;
     Precision precision = Precision::Float;
     std::optional<Console::Style> progress;  ///< none: what suits stderr
@@ -71,6 +72,9 @@ private:
 ///
 /// \throws Error  BadMesh: faces that the scheme cannot have
 engine::Model WithScheme(engine::Model const& model, Sdc::SchemeType scheme);
+
+/// {"tolerance": ..., "joined": ..., "left_apart": ...} of a welded mesh, else null.
+nlohmann::json DescribeWeld(engine::Model const& model);
 
 /// Writes data to stdout. \throws Error Io, e.g. on a full disk
 void PrintData(std::string const& text);

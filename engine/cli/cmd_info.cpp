@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include "engine/cli/cli.h"
+#include "engine/cli/option_names.h"
 #include "engine/scene/mesh_info.h"
 #include "engine/scene/subdivision_names.h"
 
@@ -10,7 +11,8 @@ namespace limn::cli {
 
 namespace {
 
-nlohmann::json ToJson(engine::MeshInfo const& info, far_ext::ControlMesh const& cage) {
+nlohmann::json ToJson(engine::MeshInfo const& info, engine::Model const& model) {
+    far_ext::ControlMesh const& cage = model.GetCage();
     nlohmann::json bySize = nlohmann::json::object();
     for (auto const& [size, count] : info.facesBySize) bySize[std::to_string(size)] = count;
     nlohmann::json defects = nlohmann::json::array();
@@ -18,7 +20,8 @@ nlohmann::json ToJson(engine::MeshInfo const& info, far_ext::ControlMesh const& 
         defects.push_back({{"kind", defect.kind},
                            {"element", defect.element},
                            {"line", defect.line},
-                           {"message", defect.message}});
+                           {"count", defect.count},
+                           {"message", NameFlags(defect.message)}});
     }
     auto const& options = cage.options;
     return {{"vertices", info.vertices},
@@ -47,6 +50,7 @@ nlohmann::json ToJson(engine::MeshInfo const& info, far_ext::ControlMesh const& 
               {"fvar", engine::kFVarWords.GetWord(options.GetFVarLinearInterpolation())},
               {"creases", engine::kCreaseWords.GetWord(options.GetCreasingMethod())},
               {"triangles", engine::kTriangleWords.GetWord(options.GetTriangleSubdivision())}}},
+            {"weld", DescribeWeld(model)},
             {"defects", defects}};
 }
 
@@ -86,7 +90,11 @@ std::string ToText(engine::Model const& model, engine::MeshInfo const& info) {
                  fmt::join(info.uv.tiles, ", "), info.uv.overlapFaces, info.uv.flippedFaces,
                  info.uv.zeroAreaFaces, info.uv.outOfRangeFaces));
     }
-    for (auto const& defect : info.defects) line("defect", defect.message);
+    if (auto const& weld = model.GetWeld()) {
+        line("weld", fmt::format("within {}: {} vertices joined to others, {} left apart",
+                                 weld->tolerance, weld->numJoined, weld->numLeftApart));
+    }
+    for (auto const& defect : info.defects) line("defect", NameFlags(defect.message));
     return text;
 }
 
@@ -106,7 +114,7 @@ Verb AddInfo(CLI::App& app) {
                 context.KeepStdoutForData(true);
                 auto const model = context.Load(a->mesh, Context::Defects::Keep);
                 auto const info = engine::DescribeMesh(model);
-                auto json = ToJson(info, model.GetCage());
+                auto json = ToJson(info, model);
                 std::string const text =
                     a->asJson
                         ? json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"

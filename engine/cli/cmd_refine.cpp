@@ -99,7 +99,7 @@ void CheckSpace(RefineArguments const& a, CLI::App const& verb) {
 int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& context) {
     constexpr char const* kWhy = "means nothing with --curve; leave it out";
     RefuseEach(verb, kDifferentialOptions, kWhy);
-    RefuseEach(verb, {"--limit"}, kWhy);
+    RefuseEach(verb, {"--limit", "--weld"}, kWhy);
     auto const rule = GetRule(a) == SubdivisionRule::Butterfly ? eval::CurveRule::FourPoint
                                                                : eval::CurveRule::CubicBSpline;
     auto const curves = engine::ReadPolylines(a.mesh);

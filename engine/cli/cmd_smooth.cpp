@@ -189,8 +189,8 @@ int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     AddToReport(context.GetReport(), found);
     if (!found.HasConverged() && !a.keepsResult) return context.MissTarget(Explain(a.mesh, found));
 
-    if (engine::GetEnding(a.output) == ".obj")
-        mesh->primvars.clear();  // which has no place for them
+    if (engine::GetEnding(a.output) == ".obj")  // which has no place for the widths
+        std::erase_if(mesh->primvars, [](auto const& primvar) { return primvar.name == "width"; });
     engine::MeshSequence files(precision);
     auto const warnings = files.Add(a.output, *mesh);
     if (!a.picture.empty())

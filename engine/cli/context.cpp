@@ -10,6 +10,7 @@
 #include "engine/io/file.h"
 #include "engine/scene/defects.h"
 #include "engine/scene/subdivision_names.h"
+#include "engine/scene/weld.h"
 #include "engine/version.h"
 #include "far_ext/error.h"
 
@@ -57,6 +58,7 @@ Context::Context(CommonOptions const& common, std::string command,
 
 engine::Model Context::Load(std::string const& path, Defects defects) {
     engine::Scene scene = _meshes.Read(path);
+    if (_common.weld) scene = engine::Weld(std::move(scene), *_common.weld);
     ApplyOptions(_common, scene.cage);
     Warn(scene.warnings);
     auto model = engine::Model::Build(std::move(scene));
@@ -69,6 +71,7 @@ engine::Model Context::Load(std::string const& path, Defects defects) {
                                  {"vertices", model.GetCage().numVertices},
                                  {"faces", model.GetCage().GetNumFaces()},
                                  {"subdivision", engine::DescribeSubdivision(model.GetCage())}});
+    if (model.GetWeld()) _report["inputs"].back()["weld"] = DescribeWeld(model);
     return model;
 }
 
@@ -94,6 +97,14 @@ engine::Model WithScheme(engine::Model const& model, Sdc::SchemeType scheme) {
     scene.cage.scheme = scheme;
     far_ext::Validate(scene.cage);  // here the option is wrong, not the file: no path
     return engine::Model::Build(std::move(scene));
+}
+
+nlohmann::json DescribeWeld(engine::Model const& model) {
+    auto const& weld = model.GetWeld();
+    if (!weld) return nullptr;
+    return {{"tolerance", weld->tolerance},
+            {"joined", weld->numJoined},
+            {"left_apart", weld->numLeftApart}};
 }
 
 void PrintData(std::string const& text) {

@@ -28,6 +28,7 @@ constexpr OptionName kOptionNames[] = {
     {"maps", "--maps"},
     {"noiseRamp", "--noise-ramp"},
     {"octaves", "--noise-octaves"},
+    {"orientation", "--orientation"},
     {"outputPattern", "-o"},
     {"path", "-o"},
     {"precision", "--precision"},
@@ -40,6 +41,7 @@ constexpr OptionName kOptionNames[] = {
     {"stop", "--sweeps"},
     {"triangles", "--triangles"},
     {"view", "--view"},
+    {"weld", "--weld"},
 };
 
 }  // namespace

@@ -35,6 +35,9 @@ void AddCommonOptions(CLI::App& app, CommonOptions& o) {
     group(app.add_option("--creases", o.creases, "uniform or chaikin (default: the file's tag)"));
     group(
         app.add_option("--triangles", o.triangles, "catmark or smooth (default: the file's tag)"));
+    group(app.add_option("--weld", o.weld,
+                         "join boundary vertices that lie within this length of each other (0: in "
+                         "one place), as where an exporter has cut along texture seams"));
     group(AddWordOption(app, "--orientation", o.orientation, engine::kOrientationWords,
                         "right (default): faces are counter-clockwise from outside; left"));
     group(app.add_option("--threads", o.numThreads,

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/differential/edit_reader.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "engine/io/file.h"
+#include "engine/io/text_scanner.h"
 #include "far_ext/error.h"
 
 namespace limn::engine {
@@ -16,15 +19,15 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Text cut to what fits a line of a terminal.
-std::string Shorten(std::string const& text) {
-    constexpr size_t kLongest = 60;
-    return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
-}
+/// An edit is an object of lists of objects of lists.
+constexpr int kDeepest = 4;
 
-/// A value for a message: its beginning, on one line, in ASCII.
-std::string Quote(Json const& value) {
-    return Shorten(value.dump(-1, ' ', /*ensure_ascii=*/true, Json::error_handler_t::replace));
+/// A value as it can stand in a message: one line, at most 60 characters.
+std::string Show(Json const& value) {
+    constexpr size_t kMaxShown = 60;
+    std::string text = value.dump(-1, ' ', /*ensure_ascii=*/true);
+    if (text.size() > kMaxShown) text = text.substr(0, kMaxShown) + "...";
+    return text;
 }
 
 class EditReader {
@@ -33,14 +36,7 @@ public:
 
     CurvatureEdit Read() const {
         InputFile const file(_path);
-        // Deep nesting would overflow the stack of whoever walks through the values.
-        auto const checkDepth = [&](int depth, Json::parse_event_t, Json&) {
-            if (depth > kDeepest)
-                Refuse(
-                    fmt::format("values are nested more than {} deep; an edit's are 4", kDeepest));
-            return true;
-        };
-        Json const json = Json::parse(file.GetBytes(), checkDepth, /*allow_exceptions=*/false);
+        Json const json = Parse(file.GetBytes());
         if (!json.is_object()) Refuse("this is no JSON object");
         CurvatureEdit edit;
         for (auto const& [key, value] : json.items()) {
@@ -57,18 +53,36 @@ public:
                 }
             } else if (key == "filter") {
                 if (value != "polarise")
-                    Refuse(fmt::format("filter is {}; 'polarise' is possible", Quote(value)));
+                    Refuse(fmt::format("filter is {}; 'polarise' is possible", Show(value)));
                 edit.isPolarised = true;
             } else {
                 Refuse(fmt::format("key {} is not known; curvature, rotate and filter are",
-                                   Quote(key)));
+                                   TextScanner::Quote(key)));
             }
         }
         return edit;
     }
 
 private:
-    static constexpr int kDeepest = 16;
+    Json Parse(std::string_view text) const {
+        auto const limitDepth = [&](int depth, Json::parse_event_t, Json&) {
+            if (depth > kDeepest)
+                Refuse(fmt::format("values are nested more than {} deep", kDeepest));
+            return true;
+        };
+        try {
+            return Json::parse(text, limitDepth);
+        } catch (Json::parse_error const& error) {
+            auto const line = std::count(text.begin(), text.begin() + GetPlace(error, text), '\n');
+            Refuse(fmt::format("line {} is no JSON", line + 1));
+        } catch (Json::out_of_range const&) {
+            Refuse("a number is too large");
+        }
+    }
+
+    static std::ptrdiff_t GetPlace(Json::parse_error const& error, std::string_view text) {
+        return static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
+    }
 
     [[noreturn]] void Refuse(std::string const& what) const {
         throw Error(ErrorCode::BadMesh, fmt::format("{}: {}", _path, what));
@@ -82,7 +96,7 @@ private:
     /// All keys that are needed have been found; there must be no others.
     void CheckKeys(std::string const& key, Json const& entry, size_t count) const {
         if (entry.size() != count)
-            Refuse(fmt::format("'{}': {} has unknown keys", key, Quote(entry)));
+            Refuse(fmt::format("'{}': {} has unknown keys", key, Show(entry)));
     }
 
     Index VertexOf(std::string const& key, Json const& entry) const {
@@ -95,7 +109,7 @@ private:
 
     double NumberOf(std::string const& key, Json const& entry, char const* name) const {
         if (!entry.is_object() || !entry.contains(name) || !entry[name].is_number()) {
-            Refuse(fmt::format("'{}': {} has no number '{}'", key, Quote(entry), name));
+            Refuse(fmt::format("'{}': {} has no number '{}'", key, Show(entry), name));
         }
         return entry[name].get<double>();
     }
@@ -109,7 +123,7 @@ private:
             axis[c] = number.is_number() ? number.get<double>() : 0.0;
         }
         if (!(std::hypot(axis[0], axis[1], axis[2]) > 0.0)) {
-            Refuse(fmt::format("'rotate': {} has no axis of three numbers", Quote(entry)));
+            Refuse(fmt::format("'rotate': {} has no axis of three numbers", Show(entry)));
         }
         return axis;
     }

@@ -12,9 +12,9 @@ namespace limn::engine {
 ///      "rotate": [{"vertex": 7, "axis": [0, 0, 1], "degrees": 20}], "filter": "polarise"}
 /// All keys are optional; vertices are 0-based.
 ///
-/// \throws Error  Io; BadMesh: no JSON, values nested deeper than any edit's, an unknown key, a
-/// value
-///                of the wrong kind, an axis without length
+/// \throws Error  Io; BadMesh: no JSON, values nested deeper than an edit has them, an unknown key,
+/// a
+///                value of the wrong kind, an axis without length
 CurvatureEdit ReadCurvatureEdit(std::string const& path);
 
 }  // namespace limn::engine

@@ -3,7 +3,9 @@
 
 #include <iterator>
 
+#include "engine/differential/polyline_chains.h"
 #include "engine/io/file.h"
+#include "engine/io/file_kind.h"
 #include "engine/io/text_scanner.h"
 
 namespace limn::engine {
@@ -25,21 +27,32 @@ size_t ResolveIndex(TextScanner& scan, std::string_view word, size_t count) {
     return static_cast<size_t>(index);
 }
 
-eval::Curve ReadLine(TextScanner& scan, std::vector<eval::DoubleLanes> const& points) {
-    std::vector<size_t> indices;
+/// \throws Error  BadMesh: fewer than two points
+Polyline ReadLine(TextScanner& scan, size_t numPoints) {
+    Polyline polyline;
+    polyline.line = scan.GetLineNumber();
     scan.DropComment();
     for (std::string_view word = scan.Word(); !word.empty(); word = scan.Word()) {
-        indices.push_back(ResolveIndex(scan, word, points.size()));
+        polyline.vertices.push_back(ResolveIndex(scan, word, numPoints));
     }
+    if (polyline.vertices.size() < 2) {
+        scan.Refuse(fmt::format("a polyline has {} points; at least 2 are needed",
+                                polyline.vertices.size()));
+    }
+    return polyline;
+}
+
+/// \throws Error  BadMesh: a closed one of fewer than three points
+eval::Curve MakeCurve(TextScanner const& scan, Polyline const& polyline,
+                      std::vector<eval::DoubleLanes> const& points) {
     eval::Curve curve;
-    curve.isClosed = indices.size() > 1 && indices.front() == indices.back();
-    if (curve.isClosed) indices.pop_back();
-    size_t const least = curve.isClosed ? 3 : 2;
-    if (indices.size() < least) {
-        scan.Refuse(fmt::format("{} polyline has {} points; at least {} are needed",
-                                curve.isClosed ? "a closed" : "a", indices.size(), least));
+    curve.isClosed = polyline.IsClosed();
+    size_t const count = polyline.vertices.size() - curve.isClosed;
+    if (curve.isClosed && count < 3) {
+        scan.RefuseAt(polyline.line,
+                      fmt::format("a closed polyline has {} points; at least 3 are needed", count));
     }
-    for (size_t index : indices) curve.points.push_back(points[index]);
+    for (size_t i = 0; i < count; ++i) curve.points.push_back(points[polyline.vertices[i]]);
     return curve;
 }
 
@@ -47,22 +60,32 @@ eval::Curve ReadLine(TextScanner& scan, std::vector<eval::DoubleLanes> const& po
 
 std::vector<eval::Curve> ReadPolylines(std::string const& path) {
     InputFile const file(path);
-    TextScanner scan(file.GetBytes(), path);
+    RefuseForeignFile(file.GetBytes(), path, "OBJ");
+    TextScanner scan(file.GetBytes(), path, TextScanner::Backslash::JoinsLines);
     std::vector<eval::DoubleLanes> points;
-    std::vector<eval::Curve> curves;
+    std::vector<Polyline> polylines;
     while (scan.NextLine()) {
         std::string_view const keyword = scan.Word();
         if (keyword == "v") {
             double const x = scan.Number("x"), y = scan.Number("y"), z = scan.Number("z");
             points.push_back({x, y, z, 0.0});
         } else if (keyword == "l") {
-            curves.push_back(ReadLine(scan, points));
+            polylines.push_back(ReadLine(scan, points.size()));
         }
     }
-    if (curves.empty()) {
+    if (polylines.empty()) {
         throw Error(ErrorCode::BadMesh,
                     fmt::format("{}: the file has no polylines; `curve` needs 'l' lines", path));
     }
+    PolylineChains chains(std::move(polylines));
+    if (auto const branch = chains.FindBranch()) {
+        scan.RefuseAt(branch->line,
+                      fmt::format("polylines branch at vertex {} (the first 'v' is 1); at most two "
+                                  "may end there, and none on another",
+                                  branch->vertex + 1));
+    }
+    std::vector<eval::Curve> curves;
+    for (Polyline const& chain : chains.Join()) curves.push_back(MakeCurve(scan, chain, points));
     return curves;
 }
 

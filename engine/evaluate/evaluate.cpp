@@ -8,6 +8,8 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include "engine/scene/require_limit.h"
+
 namespace limn::engine {
 
 size_t LimitValues::CountWithoutLimit() const {
@@ -16,6 +18,7 @@ size_t LimitValues::CountWithoutLimit() const {
 
 LimitValues EvaluateLimit(Model const& model, PlaceArrays const& places, Orientation orientation,
                           Job& job) {
+    RequireLimit(model);
     eval::LimitSurface const surface(model.GetRefiner());
     auto const located = LocatePlaces(model, places);
     std::vector<eval::SurfaceSample> samples(located.size());

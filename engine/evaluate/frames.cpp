@@ -15,7 +15,9 @@
 #include "engine/evaluate/place_table.h"
 #include "engine/io/file.h"
 #include "engine/io/mesh_reader.h"
+#include "engine/scene/require_limit.h"
 #include "engine/scene/same_faces.h"
+#include "engine/scene/weld.h"
 #include "far_ext/error.h"
 
 namespace limn::engine {
@@ -172,6 +174,7 @@ FramesReport EvaluateFrames(Model const& model, PlaceArrays const& places,
                             Job& job) {
     FramesReport report;
     report.outputs = MakeOutputPaths(options.outputPattern, frames);
+    RequireLimit(model);
     eval::LimitSurface const surface(model.GetRefiner());
     eval::PlaceStencils const stencils(surface, LocatePlaces(model, places));
     std::optional<eval::StencilEvaluator> evaluator;
@@ -193,7 +196,8 @@ FramesReport EvaluateFrames(Model const& model, PlaceArrays const& places,
     };
     auto const work = [&](size_t i) {
         job.CheckStopped();
-        Scene const frame = ReadMesh(frames[i].path);
+        Scene frame = ReadMesh(frames[i].path);
+        if (model.GetWeld()) frame = Weld(std::move(frame), model.GetWeld()->tolerance);
         CheckTopology(model, frame);
         auto file = std::make_unique<AtomicFile>(report.outputs[i]);
         auto const values = MakeLimitValues(surface, places.faces, evaluate(frame));

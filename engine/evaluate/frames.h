@@ -47,7 +47,7 @@ struct FramesReport {
 ///
 /// Files    All outputs appear once the last one is written, each complete; or none does.
 /// \param model    the topology and its tags; frames give positions only, and must have the same
-///                 faces
+///                 faces. Where it is welded each frame is, too
 /// \throws Error   BadMesh: a frame that cannot be parsed or has other faces (file named), and as
 ///                 LocatePlaces; BadOption: no {frame} in the output's name; Io
 /// \throws Stopped

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "engine/scene/refine.h"
+#include "engine/scene/require_limit.h"
 #include "eval/surface/vertex_limits.h"
 #include "far_ext/rows/points.h"
 #include "far_ext/topology/refiner.h"
@@ -104,6 +105,7 @@ bool FitResult::HasConverged() const {
 
 FitResult FitToLimit(Model const& model, FitOptions const& options, Job& job) {
     auto const start = std::chrono::steady_clock::now();
+    if (options.alpha == 0.0) RequireLimit(model);  // else n-gons are subdivided first
     eval::Interpolator const interpolator(model.GetRefiner(), 0, {.alpha = options.alpha});
     eval::InterpolateOptions const solve{.method = options.method,
                                          .tolerance = options.tolerance,

@@ -30,12 +30,20 @@ void Append(fmt::memory_buffer& to, std::string_view text) {
     to.append(text.data(), text.data() + text.size());
 }
 
+/// The colours that OBJ can hold behind positions, or null.
+Primvar const* FindObjColours(Scene const& scene) {
+    auto const found = std::ranges::find_if(scene.primvars, [](Primvar const& primvar) {
+        return primvar.name == "color" && (primvar.numChannels == 3 || primvar.numChannels == 4);
+    });
+    return found == scene.primvars.end() ? nullptr : &*found;
+}
+
 class ObjText {
 public:
     ObjText(Scene const& scene, Precision precision) : _scene(scene), _precision(precision) {}
 
     std::string Make() {
-        AppendRows("v", _scene.positions, 3);
+        AppendVertices();
         AppendRows("vt", _scene.uvs, 2);
         AppendRows("vn", _scene.normals, 3);
         AppendFaces();
@@ -51,6 +59,24 @@ private:
                 _text.push_back(' ');
                 AppendNumber(_text, values[i + c], _precision);
             }
+            _text.push_back('\n');
+        }
+    }
+
+    /// Positions, with colours behind them where the mesh has any.
+    void AppendVertices() {
+        Primvar const* const colours = FindObjColours(_scene);
+        if (!colours) return AppendRows("v", _scene.positions, 3);
+        far_ext::Points const points(_scene.positions);
+        size_t const n = static_cast<size_t>(colours->numChannels);
+        for (size_t vertex = 0; vertex < points.GetCount(); ++vertex) {
+            _text.push_back('v');
+            for (double coordinate : points[vertex]) {
+                _text.push_back(' ');
+                AppendNumber(_text, coordinate, _precision);
+            }
+            for (size_t c = 0; c < n; ++c)
+                fmt::format_to(std::back_inserter(_text), " {}", colours->values[vertex * n + c]);
             _text.push_back('\n');
         }
     }
@@ -205,8 +231,8 @@ MeshBytes FormatMesh(std::string const& path, Scene const& scene, Precision prec
     }
     MeshBytes file;
     if (GetEnding(path) == ".obj") {
-        if (!scene.primvars.empty())
-            file.leftOut.push_back(path + ": OBJ holds no primvars; they are left out");
+        if (scene.primvars.size() > (FindObjColours(scene) ? 1 : 0))
+            file.leftOut.push_back(path + ": OBJ holds no primvars but colours; they are left out");
         file.bytes = ObjText(scene, precision).Make();
         return file;
     }

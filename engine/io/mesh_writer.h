@@ -19,9 +19,9 @@ struct MeshBytes {
     std::vector<std::string> leftOut;
 };
 
-/// A mesh as OBJ (with UVs, normals, groups and tags) or PLY (with corner UVs and primvars, without
-/// tags or groups) by its path's ending in small or capital letters. Numbers read back as the same
-/// float or double.
+/// A mesh as OBJ (with the primvar "color", UVs, normals, groups and tags) or PLY (with corner UVs
+/// and primvars, without tags or groups) by its path's ending in small or capital letters. Numbers
+/// read back as the same float or double.
 ///
 /// \throws Error    BadOption: another ending.  BadMesh: a coordinate that is no number or beyond
 ///                  the range of the precision

@@ -2,7 +2,6 @@
 #include "engine/io/number_table.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
@@ -11,92 +10,160 @@
 #include <fmt/ranges.h>
 
 #include "engine/io/file.h"
+#include "engine/io/file_kind.h"
+#include "engine/io/text_scanner.h"
 #include "far_ext/error.h"
 
 namespace limn::engine {
 
 namespace {
 
+using Layout = std::vector<std::string>;
+
 std::string_view Trim(std::string_view text) {
-    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-    while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r'))
-        text.remove_suffix(1);
+    while (!text.empty() && TextScanner::IsSpace(text.front())) text.remove_prefix(1);
+    while (!text.empty() && TextScanner::IsSpace(text.back())) text.remove_suffix(1);
     return text;
 }
 
-std::vector<std::string_view> SplitAtCommas(std::string_view line) {
-    std::vector<std::string_view> fields;
-    for (size_t start = 0; start <= line.size();) {
-        size_t const comma = std::min(line.find(',', start), line.size());
-        fields.push_back(Trim(line.substr(start, comma - start)));
-        start = comma + 1;
-    }
-    return fields;
+/// True for names that differ in capital letters at most.
+bool AreAlike(std::string_view a, std::string_view b) {
+    auto const lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+    return std::ranges::equal(a, b, {}, lower, lower);
 }
 
-/// Where a layout's columns stand in a header; nothing if one is missing.
-std::optional<std::vector<size_t>> FindColumns(std::vector<std::string_view> const& header,
-                                               std::vector<std::string> const& layout) {
-    std::vector<size_t> columns;
-    for (std::string const& name : layout) {
-        auto const found = std::find(header.begin(), header.end(), name);
-        if (found == header.end()) return {};
-        columns.push_back(static_cast<size_t>(found - header.begin()));
+class TableReader {
+public:
+    TableReader(std::string_view text, std::string const& path, std::vector<Layout> const& layouts)
+        : _text(text), _scan(text, path), _layouts(layouts) {}
+
+    NumberTable Read() {
+        ReadHeader();
+        while (NextLine()) {
+            Split();
+            for (size_t c = 0; c < _columns.size(); ++c) {
+                std::string_view const field =
+                    _columns[c] < _fields.size() ? _fields[_columns[c]] : std::string_view();
+                _table.values.push_back(ToNumber(field, _layouts[_table.layout][c]));
+            }
+            _table.lines.push_back(_scan.GetLineNumber());
+        }
+        return std::move(_table);
     }
-    return columns;
-}
+
+private:
+    /// Moves to the next line that is not empty; false at the end.
+    bool NextLine() {
+        do {
+            if (!_scan.NextLine()) return false;
+            _line = _scan.RestOfLine();
+        } while (_line.empty());
+        return true;
+    }
+
+    /// The line into its fields.
+    void Split() {
+        std::string_view const line = _line;
+        _fields.clear();
+        size_t start = 0;
+        do {
+            while (start < line.size() && TextScanner::IsSpace(line[start])) ++start;
+            bool const isQuoted = start < line.size() && line[start] == '"';
+            size_t const closing = isQuoted ? FindClosingQuote(line, start) : start;
+            size_t const end = std::min(line.find(_separator, closing), line.size());
+            _fields.push_back(isQuoted ? Trim(line.substr(start + 1, closing - start - 1))
+                                       : Trim(line.substr(start, end - start)));
+            start = end + 1;
+        } while (start <= line.size());
+    }
+
+    /// Of a field that begins at `start`; two quotes side by side stand for one.
+    size_t FindClosingQuote(std::string_view line, size_t start) const {
+        for (size_t at = start + 1; at < line.size(); ++at) {
+            if (line[at] != '"') continue;
+            if (at + 1 == line.size() || line[at + 1] != '"') return at;
+            ++at;
+        }
+        _scan.Refuse("a quoted field does not end on its line");
+    }
+
+    void ReadHeader() {
+        std::string wanted;
+        for (Layout const& layout : _layouts)
+            wanted += fmt::format("{}{}", wanted.empty() ? "" : " or ", fmt::join(layout, ","));
+        if (!NextLine()) {
+            throw Error(ErrorCode::BadMesh,
+                        fmt::format("{}: the file is empty; a header {} is needed", _scan.GetPath(),
+                                    wanted));
+        }
+        // Spreadsheets write semicolons where commas are decimal points.
+        for (char separator : {',', ';'}) {
+            _separator = separator;
+            if (FindLayout()) return;
+        }
+        RefuseForeignFile(_text, _scan.GetPath(), "a table (CSV)");
+        _scan.Refuse(fmt::format("the header needs the columns {}", wanted));
+    }
+
+    /// True if the header, split at the separator, has all columns of one of the layouts.
+    bool FindLayout() {
+        Split();
+        for (_table.layout = 0; _table.layout < _layouts.size(); ++_table.layout) {
+            if (!FindColumns(_layouts[_table.layout])) continue;
+            _table.numColumns = _columns.size();
+            return true;
+        }
+        return false;
+    }
+
+    /// True if the header has all of a layout's columns.
+    bool FindColumns(Layout const& layout) {
+        _columns.clear();
+        for (std::string const& name : layout) {
+            auto const column = FindColumn(name);
+            if (!column) return false;
+            _columns.push_back(*column);
+        }
+        return true;
+    }
+
+    /// A column by its very name, else by one that differs in capital letters.
+    std::optional<size_t> FindColumn(std::string const& name) const {
+        auto found = std::ranges::find(_fields, name);
+        if (found == _fields.end()) {
+            auto const isAlike = [&](std::string_view field) { return AreAlike(field, name); };
+            found = std::ranges::find_if(_fields, isAlike);
+            if (found == _fields.end()) return std::nullopt;
+            if (std::find_if(found + 1, _fields.end(), isAlike) != _fields.end())
+                _scan.Refuse(fmt::format("the header has column '{}' twice", name));
+        }
+        return static_cast<size_t>(found - _fields.begin());
+    }
+
+    double ToNumber(std::string_view field, std::string const& column) const {
+        auto const parsed = TextScanner::ParseNumber(field);
+        if (parsed.IsNumber() && parsed.length == field.size()) return parsed.value;
+        bool const hasComma = field.find(',') != std::string_view::npos;
+        _scan.Refuse(fmt::format("{} in column {} is no number{}", TextScanner::Quote(field),
+                                 column, hasComma ? "; write a decimal point, not a comma" : ""));
+    }
+
+    std::string_view _text;
+    TextScanner _scan;
+    std::vector<Layout> const& _layouts;
+    NumberTable _table;
+    char _separator = ',';
+    std::string_view _line;
+    std::vector<std::string_view> _fields;  // of the line
+    std::vector<size_t> _columns;           // of the layout, among the fields
+};
 
 }  // namespace
 
 NumberTable ReadNumberTable(std::string const& path,
                             std::vector<std::vector<std::string>> const& layouts) {
     InputFile const file(path);
-    std::string_view rest = file.GetBytes();
-    std::string wanted;
-    for (auto const& layout : layouts)
-        wanted += fmt::format("{}{}", wanted.empty() ? "" : " or ", fmt::join(layout, ","));
-    NumberTable table;
-    std::vector<size_t> columns;
-    for (size_t line = 1; !rest.empty(); ++line) {
-        size_t const end = std::min(rest.find('\n'), rest.size());
-        std::string_view const text = Trim(rest.substr(0, end));
-        rest.remove_prefix(std::min(end + 1, rest.size()));
-        if (text.empty()) continue;
-        auto const fields = SplitAtCommas(text);
-        if (columns.empty()) {
-            for (size_t i = 0; i < layouts.size() && columns.empty(); ++i) {
-                if (auto const found = FindColumns(fields, layouts[i])) {
-                    columns = *found;
-                    table.layout = i;
-                }
-            }
-            if (columns.empty())
-                throw Error(
-                    ErrorCode::BadMesh,
-                    fmt::format("{}:{}: the header needs the columns {}", path, line, wanted));
-            table.numColumns = columns.size();
-            continue;
-        }
-        for (size_t c = 0; c < columns.size(); ++c) {
-            std::string_view const field =
-                columns[c] < fields.size() ? fields[columns[c]] : std::string_view();
-            double value = 0.0;
-            auto const [stop, code] =
-                std::from_chars(field.data(), field.data() + field.size(), value);
-            if (code != std::errc() || stop != field.data() + field.size() ||
-                !std::isfinite(value)) {
-                throw Error(ErrorCode::BadMesh,
-                            fmt::format("{}:{}: '{}' in column {} is no number", path, line, field,
-                                        layouts[table.layout][c]));
-            }
-            table.values.push_back(value);
-        }
-        table.lines.push_back(line);
-    }
-    if (columns.empty())
-        throw Error(ErrorCode::BadMesh,
-                    fmt::format("{}: the file is empty; a header {} is needed", path, wanted));
-    return table;
+    return TableReader(file.GetBytes(), path, layouts).Read();
 }
 
 int GetIndex(NumberTable const& table, std::string const& path, size_t row, size_t column,

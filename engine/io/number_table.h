@@ -17,11 +17,12 @@ struct NumberTable {
     double Get(size_t row, size_t column) const { return values[row * numColumns + column]; }
 };
 
-/// Reads a table whose header names the columns of one of the layouts, in any order; other columns
-/// are skipped.
+/// Reads a table whose header names the columns of one of the layouts, in any order and in small or
+/// capital letters; other columns are skipped. Fields are parted by commas, or all by semicolons,
+/// and may be quoted.
 ///
-/// \throws Error  BadMesh: another header, a field that is no finite number (file and line named).
-///                Io
+/// \throws Error  BadMesh: another header, one that names a column twice, a field that is no finite
+///                number (file and line named).  Io
 NumberTable ReadNumberTable(std::string const& path,
                             std::vector<std::vector<std::string>> const& layouts);
 

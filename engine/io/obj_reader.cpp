@@ -2,9 +2,15 @@
 #include "engine/io/obj_reader.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <limits>
+#include <span>
 #include <unordered_map>
 
+#include "engine/io/colour_range.h"
+#include "engine/io/obj_tags.h"
+#include "engine/io/skipped_lines.h"
 #include "engine/io/text_scanner.h"
 
 namespace limn::engine {
@@ -13,11 +19,28 @@ namespace {
 
 constexpr size_t kMaxElements = std::numeric_limits<Index>::max() / 4;
 
+/// Statements of curves and surfaces in free form, which make no polygons.
+constexpr std::string_view kFreeForm[] = {
+    "vp",   "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim",  "hole",
+    "scrv", "sp",     "end", "con",  "bzp",  "bsp",  "cdc",   "cdp",  "res",  "stech", "ctech"};
+
+/// Statements that say nothing of a subdivision surface: normals, points and lines, how things
+/// look.
+constexpr std::string_view kWithoutEffect[] = {
+    "vn",       "p",   "l",          "s",         "mtllib", "mg",     "bevel", "c_interp",
+    "d_interp", "lod", "shadow_obj", "trace_obj", "usemap", "maplib", "call",  "csh"};
+
+bool IsAmong(std::span<std::string_view const> words, std::string_view word) {
+    return std::ranges::find(words, word) != words.end();
+}
+
 /// Accumulates one OBJ file; one method per statement.
 class ObjReader {
 public:
     ObjReader(std::string_view text, Scene& scene)
-        : _scan(WithoutByteOrderMark(text), scene.path), _scene(scene) {
+        : _scan(text, scene.path, TextScanner::Backslash::JoinsLines),
+          _scene(scene),
+          _tags(_scan, scene) {
         ReserveFor(text);
     }
 
@@ -32,7 +55,7 @@ public:
             else if (keyword == "f")
                 ReadFace();
             else if (keyword == "t")
-                ReadTag();
+                _tags.ReadLine();
             else if (keyword == "usemtl")
                 ReadGroup(GroupKind::Material);
             else if (keyword == "g")
@@ -40,16 +63,12 @@ public:
             else if (keyword == "o")
                 ReadGroup(GroupKind::Object);
             else
-                CheckIsText(keyword);
+                Skip(keyword);
         }
         Finish();
     }
 
 private:
-    static std::string_view WithoutByteOrderMark(std::string_view text) {
-        return text.starts_with("\xef\xbb\xbf") ? text.substr(3) : text;
-    }
-
     /// Room for what the lines begin with, so that no array has to move while it grows.
     void ReserveFor(std::string_view text) {
         size_t numPositions = 0, numUVs = 0, numFaces = 0;
@@ -76,6 +95,27 @@ private:
         if (_scene.positions.size() / 3 >= kMaxElements) _scan.Refuse("too many vertices");
         double const x = _scan.Number("x"), y = _scan.Number("y"), z = _scan.Number("z");
         _scene.positions.insert(_scene.positions.end(), {x, y, z});
+        if (!_scan.AtEndOfLine()) ReadColour();
+    }
+
+    /// What may stand behind a position: nothing but a comment, a weight for curves, or a colour of
+    /// three or four channels, which the first vertex that has one decides.
+    void ReadColour() {
+        _scan.DropComment();
+        std::array<float, 5> values{};
+        size_t count = 0;
+        while (count < values.size() && !_scan.AtEndOfLine()) {
+            auto const value = _scan.TryNumber();
+            values[count++] = static_cast<float>(value.value_or(0.0));
+            if (!value) count = values.size();
+        }
+        if (count <= 1) return;
+        if (_numColourChannels == 0 && (count == 3 || count == 4)) _numColourChannels = count;
+        if (count == _numColourChannels) {
+            _colours.insert(_colours.end(), values.begin(), values.begin() + count);
+        } else if (_numUnclearPositions++ == 0) {
+            _firstUnclearPosition = _scan.GetLineNumber();
+        }
     }
 
     void ReadUV() {
@@ -106,29 +146,32 @@ private:
         return static_cast<Index>(index);
     }
 
+    /// Appends one corner: v, v/vt, v//vn or v/vt/vn. True if it has a texture index.
+    bool ReadCorner(std::string_view word) {
+        char const* at = word.data();
+        char const* const end = at + word.size();
+        _scene.cage.faceVertices.push_back(ResolveIndex(at, end, NumVertices(), "vertex"));
+        Index uv = -1;
+        if (at != end && *at == '/') {
+            ++at;
+            if (at != end && *at != '/') uv = ResolveIndex(at, end, NumUVs(), "texture");
+            if (at != end && *at == '/') at = end;  // normals are not used
+        }
+        if (at != end) {
+            _scan.Refuse(fmt::format("corner {} is not of the form v, v/vt, v//vn or v/vt/vn",
+                                     TextScanner::Quote(word)));
+        }
+        _faceUVs.push_back(uv);
+        return uv >= 0;
+    }
+
     void ReadFace() {
         auto& cage = _scene.cage;
         if (cage.faceVertices.size() >= kMaxElements) _scan.Refuse("too many face corners");
         int size = 0, numWithUV = 0;
         for (std::string_view word = _scan.Word(); !word.empty(); word = _scan.Word()) {
             if (word.front() == '#') break;
-            char const* at = word.data();
-            char const* const end = at + word.size();
-            cage.faceVertices.push_back(ResolveIndex(at, end, NumVertices(), "vertex"));
-            Index uv = -1;
-            if (at != end && *at == '/') {
-                ++at;
-                if (at != end && *at != '/') {
-                    uv = ResolveIndex(at, end, NumUVs(), "texture");
-                    ++numWithUV;
-                }
-                if (at != end && *at == '/') at = end;  // normals are not used
-            }
-            if (at != end) {
-                _scan.Refuse(fmt::format("corner {} is not of the form v, v/vt, v//vn or v/vt/vn",
-                                         TextScanner::Quote(word)));
-            }
-            _faceUVs.push_back(uv);
+            numWithUV += ReadCorner(word);
             ++size;
         }
         if (size < 3) {
@@ -144,12 +187,16 @@ private:
         if (!numWithUV && _firstLineWithoutUV == 0) _firstLineWithoutUV = _scan.GetLineNumber();
         cage.faceSizes.push_back(size);
         _scene.faceLines.push_back(_scan.GetLineNumber());
-        for (int kind = 0; kind < 3; ++kind) {
+        AddToGroups();
+    }
+
+    /// Puts the face that was read last into the groups of its line.
+    void AddToGroups() {
+        for (size_t kind = 0; kind < _currentGroup.size(); ++kind) {
             FaceGroups& groups = _scene.groups[kind];
-            if (_currentGroup[kind] >= 0 || !groups.faceGroup.empty()) {
-                groups.faceGroup.resize(cage.faceSizes.size() - 1, -1);
-                groups.faceGroup.push_back(_currentGroup[kind]);
-            }
+            if (_currentGroup[kind] < 0 && groups.faceGroup.empty()) continue;
+            groups.faceGroup.resize(_scene.cage.faceSizes.size() - 1, -1);
+            groups.faceGroup.push_back(_currentGroup[kind]);
         }
     }
 
@@ -166,220 +213,93 @@ private:
         _currentGroup[k] = found->second;
     }
 
-    struct TagCounts {
-        long ints, floats, strings;
-    };
-
-    TagCounts ReadTagCounts(std::string_view name) {
-        std::string_view const word = _scan.Word();
-        TagCounts counts{0, 0, 0};
-        long* const parts[3] = {&counts.ints, &counts.floats, &counts.strings};
-        char const* at = word.data();
-        char const* const end = at + word.size();
-        for (int i = 0; i < 3; ++i) {
-            auto const [stop, code] = std::from_chars(at, end, *parts[i]);
-            bool const isLast = i == 2;
-            if (code != std::errc() || *parts[i] < 0 ||
-                (isLast ? stop != end : stop == end || *stop != '/')) {
-                _scan.Refuse(
-                    fmt::format("tag {}: counts are {}; ints/floats/strings such as 2/1/0 are "
-                                "needed",
-                                TextScanner::Quote(name), TextScanner::Quote(word)));
-            }
-            at = isLast ? stop : stop + 1;
-        }
-        return counts;
-    }
-
-    Index TagIndex(std::string_view tag) {
-        double const value = _scan.Number("a tag's integer");
-        if (value != std::floor(value) || std::abs(value) > std::numeric_limits<Index>::max()) {
-            _scan.Refuse(fmt::format("tag {}: {} is not an index", TextScanner::Quote(tag), value));
-        }
-        return static_cast<Index>(value);
-    }
-
-    float TagSharpness(std::string_view tag) {
-        double const value = _scan.Number("a sharpness");
-        if (value < 0.0) {
-            _scan.Refuse(fmt::format("tag {}: sharpness is {}; 0 or more is needed",
-                                     TextScanner::Quote(tag), value));
-        }
-        return static_cast<float>(std::min(value, 1e6));
-    }
-
-    void ReadTag() {
-        std::string const name(_scan.Word());
-        if (name == "vertexedit" || name == "edgeedit" || name == "faceedit") {
-            _scene.warnings.push_back(fmt::format(
-                "{}:{}: tag '{}' (a hierarchical edit) is not supported and has no effect",
-                _scene.path, _scan.GetLineNumber(), name));
-            return;
-        }
-        TagCounts const counts = ReadTagCounts(name);
-        auto const need = [&](bool ok, char const* form) {
-            if (!ok)
-                _scan.Refuse(
-                    fmt::format("tag '{}' has the wrong counts; {} is needed", name, form));
-        };
-        if (name == "crease") {
-            need(counts.ints >= 2 && (counts.floats == 1 || counts.floats == counts.ints - 1),
-                 "vertices of a chain and one sharpness (2/1/0), or one per edge");
-            ReadCrease(counts);
-        } else if (name == "corner") {
-            need(counts.ints >= 1 && (counts.floats == 1 || counts.floats == counts.ints),
-                 "vertices and one sharpness (1/1/0), or one per vertex");
-            ReadCorner(counts);
-        } else if (name == "hole") {
-            need(counts.ints >= 1, "faces (1/0/0)");
-            for (long i = 0; i < counts.ints; ++i)
-                AddTagged(_scene.cage.holes, _holeLines, TagIndex(name));
-        } else if (name == "interpolateboundary") {
-            need(counts.ints >= 1, "one integer (1/0/0)");
-            SetBoundary(TagIndex(name));
-        } else if (name == "facevaryinginterpolateboundary") {
-            need(counts.ints >= 1, "one integer (1/0/0)");
-            SetFVar(TagIndex(name));
-        } else if (name == "creasemethod") {
-            need(counts.strings >= 1, "one word (0/0/1)");
-            SetByWord(name, "normal", "chaikin", [&](bool chaikin) {
-                _scene.cage.options.SetCreasingMethod(chaikin ? Sdc::Options::CREASE_CHAIKIN
-                                                              : Sdc::Options::CREASE_UNIFORM);
-            });
-        } else if (name == "smoothtriangles") {
-            need(counts.strings >= 1, "one word (0/0/1)");
-            SetByWord(name, "catmark", "smooth", [&](bool smooth) {
-                _scene.cage.options.SetTriangleSubdivision(smooth ? Sdc::Options::TRI_SUB_SMOOTH
-                                                                  : Sdc::Options::TRI_SUB_CATMARK);
-            });
-        } else {
-            _scene.warnings.push_back(fmt::format("{}:{}: tag {} is not known and has no effect",
-                                                  _scene.path, _scan.GetLineNumber(),
-                                                  TextScanner::Quote(name)));
-        }
-    }
-
-    void AddTagged(std::vector<Index>& indices, std::vector<uint32_t>& lines, Index index) {
-        indices.push_back(index);
-        lines.push_back(_scan.GetLineNumber());
-    }
-
-    void ReadCrease(TagCounts const& counts) {
-        std::vector<Index> chain;
-        for (long i = 0; i < counts.ints; ++i) chain.push_back(TagIndex("crease"));
-        float sharpness = 0.0f;
-        for (size_t i = 0; i + 1 < chain.size(); ++i) {
-            if (static_cast<long>(i) < counts.floats) sharpness = TagSharpness("crease");
-            AddTagged(_scene.cage.creaseVertexPairs, _creaseLines, chain[i]);
-            _scene.cage.creaseVertexPairs.push_back(chain[i + 1]);
-            _scene.cage.creaseSharpness.push_back(sharpness);
-        }
-    }
-
-    void ReadCorner(TagCounts const& counts) {
-        auto& cage = _scene.cage;
-        size_t const first = cage.cornerVertices.size();
-        for (long i = 0; i < counts.ints; ++i) {
-            AddTagged(cage.cornerVertices, _cornerLines, TagIndex("corner"));
-        }
-        float sharpness = 0.0f;
-        for (size_t i = first; i < cage.cornerVertices.size(); ++i) {
-            if (static_cast<long>(i - first) < counts.floats) sharpness = TagSharpness("corner");
-            cage.cornerSharpness.push_back(sharpness);
-        }
-    }
-
-    void SetBoundary(Index value) {
-        if (value < 0 || value > 2) {
-            _scan.Refuse(
-                fmt::format("interpolateboundary is {}; 0 (none), 1 (edge and corner) or 2 "
-                            "(edge only) are possible",
-                            value));
-        }
-        constexpr Sdc::Options::VtxBoundaryInterpolation kRules[] = {
-            Sdc::Options::VTX_BOUNDARY_NONE, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER,
-            Sdc::Options::VTX_BOUNDARY_EDGE_ONLY};
-        _scene.cage.options.SetVtxBoundaryInterpolation(kRules[value]);
-        _scene.hasBoundaryTag = true;
-    }
-
-    void SetFVar(Index value) {
-        if (value < 0 || value > 5) {
-            _scan.Refuse(
-                fmt::format("facevaryinginterpolateboundary is {}; 0 to 5 are possible", value));
-        }
-        constexpr Sdc::Options::FVarLinearInterpolation kRules[] = {
-            Sdc::Options::FVAR_LINEAR_NONE,          Sdc::Options::FVAR_LINEAR_CORNERS_ONLY,
-            Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1, Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2,
-            Sdc::Options::FVAR_LINEAR_BOUNDARIES,    Sdc::Options::FVAR_LINEAR_ALL};
-        _scene.cage.options.SetFVarLinearInterpolation(kRules[value]);
-        _scene.hasFVarTag = true;
-    }
-
-    template <class Setter>
-    void SetByWord(std::string const& tag, char const* off, char const* on, Setter set) {
-        std::string_view const word = _scan.Word();
-        if (word != off && word != on) {
-            _scan.Refuse(fmt::format("tag '{}' is {}; '{}' or '{}' are possible", tag,
-                                     TextScanner::Quote(word), off, on));
-        }
-        set(word == on);
-    }
-
     /// Statements limn does not use are skipped, bytes that are no text are not.
-    void CheckIsText(std::string_view keyword) {
+    void Skip(std::string_view keyword) {
+        CheckIsText(keyword);
+        if (IsAmong(kWithoutEffect, keyword)) return;
+        (IsAmong(kFreeForm, keyword) ? _freeForm : _unknown).Add(keyword, _scan.GetLineNumber());
+    }
+
+    void CheckIsText(std::string_view keyword) const {
         for (char c : keyword.substr(0, 64)) {
             auto const byte = static_cast<unsigned char>(c);
-            if (byte < 32 || byte == 127 || (_scan.GetLineNumber() == 1 && byte >= 0xfe)) {
+            if (byte < 32 || byte == 127)
                 _scan.Refuse("this is not text; an OBJ file in ASCII or UTF-8 is needed");
-            }
         }
     }
 
     void Finish() {
         auto& cage = _scene.cage;
         cage.numVertices = NumVertices();
-        if (cage.faceSizes.empty())
-            _scan.Refuse("the file has no faces; limn needs polygons ('f' lines)");
-        CheckTagIndices();
+        if (cage.faceSizes.empty()) RefuseToHaveNoFaces();
+        _tags.Finish();
         CheckNotCutShort();
-        if (_numFacesWithUV == 0) {
-            _scene.uvs.clear();
-            return;
-        }
-        if (_numFacesWithoutUV != 0) {
-            _scene.warnings.push_back(fmt::format(
-                "{}:{}: {} of {} faces have no texture indices, so the mesh has no UVs; give every "
-                "face some or none",
-                _scene.path, _firstLineWithoutUV, _numFacesWithoutUV, cage.faceSizes.size()));
-            _scene.uvs.clear();
-            return;
-        }
-        cage.fvarChannels.push_back({NumUVs(), std::move(_faceUVs)});
+        WarnOfSkippedLines();
+        FinishColours();
+        FinishUVs();
     }
 
-    /// Tag lines may stand before the elements they name, so they are checked at the end.
-    void CheckTagIndices() {
-        auto const& cage = _scene.cage;
-        auto const check = [&](Index index, Index count, uint32_t line, char const* tag,
-                               char const* what) {
-            if (index >= 0 && index < count) return;
-            throw Error(
-                ErrorCode::BadMesh,
-                fmt::format("{}:{}: tag '{}' names {} {}; 0 to {} are possible (tag indices are "
-                            "0-based)",
-                            _scene.path, line, tag, what, index, count - 1));
-        };
-        for (size_t i = 0; i < cage.creaseVertexPairs.size(); ++i) {
-            check(cage.creaseVertexPairs[i], cage.numVertices, _creaseLines[i / 2], "crease",
-                  "vertex");
+    [[noreturn]] void RefuseToHaveNoFaces() const {
+        std::string const other = _freeForm.GetCount() > 0
+                                      ? "; it has surfaces in free form, to be exported as polygons"
+                                      : "";
+        _scan.Refuse(
+            fmt::format("the file has no faces{}; limn needs polygons ('f' lines)", other));
+    }
+
+    void Warn(uint32_t line, std::string const& message) {
+        _scene.warnings.push_back(fmt::format("{}:{}: {}", _scene.path, line, message));
+    }
+
+    void WarnOfSkippedLines() {
+        if (_freeForm.GetCount() > 0) {
+            Warn(
+                _freeForm.GetFirstLine(),
+                fmt::format("curves and surfaces in free form have no effect (export polygons): {}",
+                            _freeForm.Describe()));
         }
-        for (size_t i = 0; i < cage.cornerVertices.size(); ++i) {
-            check(cage.cornerVertices[i], cage.numVertices, _cornerLines[i], "corner", "vertex");
+        if (_unknown.GetCount() > 0) {
+            Warn(_unknown.GetFirstLine(),
+                 fmt::format("OBJ has no such statement, so it has no effect: {}",
+                             _unknown.Describe()));
         }
-        for (size_t i = 0; i < cage.holes.size(); ++i) {
-            check(cage.holes[i], cage.GetNumFaces(), _holeLines[i], "hole", "face");
+        if (_numUnclearPositions > 0) {
+            Warn(_firstUnclearPosition,
+                 fmt::format(
+                     "what stands behind x, y and z of {} vertices is neither a weight nor a "
+                     "colour like the others' and has no effect",
+                     _numUnclearPositions));
         }
+    }
+
+    void FinishColours() {
+        if (_numColourChannels == 0) return;
+        size_t const numVertices = static_cast<size_t>(NumVertices()),
+                     numColours = _colours.size() / _numColourChannels;
+        if (numColours != numVertices) {
+            _scene.warnings.push_back(fmt::format(
+                "{}: {} of {} vertices have no colour, so the mesh has none; give every "
+                "vertex one or none",
+                _scene.path, numVertices - numColours, numVertices));
+            return;
+        }
+        ScaleWholeColours(_colours);
+        _scene.primvars.push_back(
+            {"color", static_cast<int>(_numColourChannels), std::move(_colours)});
+    }
+
+    void FinishUVs() {
+        if (_numFacesWithUV > 0 && _numFacesWithoutUV == 0) {
+            _scene.cage.fvarChannels.push_back({NumUVs(), std::move(_faceUVs)});
+            return;
+        }
+        _scene.uvs.clear();
+        if (_numFacesWithUV == 0) return;
+        Warn(_firstLineWithoutUV,
+             fmt::format(
+                 "{} of {} faces have no texture indices, so the mesh has no UVs; give every "
+                 "face some or none",
+                 _numFacesWithoutUV, _scene.cage.faceSizes.size()));
     }
 
     void CheckNotCutShort() {
@@ -397,8 +317,12 @@ private:
 
     TextScanner _scan;
     Scene& _scene;
+    ObjTags _tags;
+    SkippedLines _freeForm, _unknown;
     std::vector<Index> _faceUVs;
-    std::vector<uint32_t> _creaseLines, _cornerLines, _holeLines;
+    std::vector<float> _colours;
+    size_t _numColourChannels = 0, _numUnclearPositions = 0;
+    uint32_t _firstUnclearPosition = 0;
     std::array<std::unordered_map<std::string, Index>, 3> _groupIndex;
     std::array<Index, 3> _currentGroup{-1, -1, -1};
     size_t _numFacesWithUV = 0, _numFacesWithoutUV = 0;

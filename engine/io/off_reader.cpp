@@ -1,36 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/io/off_reader.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "engine/io/colour_range.h"
 #include "engine/io/text_scanner.h"
 
 namespace limn::engine {
 
 namespace {
 
+/// What the keyword [ST][C][N][4][n]OFF says that vertices have.
+struct OffKeyword {
+    bool hasTexture = false, hasColours = false, hasNormals = false;
+    bool isHomogeneous = false, isOfAnyDimension = false, isOff = false;
+
+    /// \param skip  skip(letters): true, and a move behind them, where they come next
+    template <class Skip>
+    static OffKeyword Read(Skip skip) {
+        OffKeyword keyword;
+        keyword.hasTexture = skip("ST");
+        keyword.hasColours = skip("C");
+        keyword.hasNormals = skip("N");
+        keyword.isHomogeneous = skip("4");
+        keyword.isOfAnyDimension = skip("n");
+        keyword.isOff = skip("OFF");
+        return keyword;
+    }
+};
+
 /// OFF is a stream of words; lines matter only where a face's colour ends.
 class OffReader {
 public:
-    OffReader(std::string_view text, Scene& scene) : _scan(text, scene.path), _scene(scene) {}
+    OffReader(std::string_view text, Scene& scene)
+        : _scan(text, scene.path, TextScanner::Backslash::JoinsLines), _scene(scene) {}
 
     void Read() {
-        NextContentLine("the keyword OFF");
-        std::string_view const keyword = _scan.Word();
-        bool const hasColours = keyword == "COFF";
-        if (keyword != "OFF" && !hasColours) {
-            _scan.Refuse(fmt::format("the file starts with {}; OFF or COFF is needed",
-                                     TextScanner::Quote(keyword)));
-        }
+        ReadKeyword();
         if (_scan.AtEndOfLine()) NextContentLine("the counts");
         size_t const numVertices = Count("the number of vertices"),
                      numFaces = Count("the number of faces");
         if (numFaces == 0) _scan.Refuse("the file has no faces; limn needs polygons");
         CheckRoom(numVertices, numFaces);
-        ReadVertices(numVertices, hasColours);
+        ReadVertices(numVertices);
         ReadFaces(numFaces);
+        if (_keyword.hasTexture) {
+            auto& cage = _scene.cage;
+            cage.fvarChannels.push_back({cage.numVertices, cage.faceVertices});
+        }
     }
 
 private:
@@ -39,6 +57,24 @@ private:
             if (!_scan.NextLine()) _scan.Refuse(fmt::format("the file ends before {}", what));
             _scan.DropComment();
         } while (_scan.AtEndOfLine());
+    }
+
+    void ReadKeyword() {
+        NextContentLine("the keyword OFF");
+        TextScanner atStart = _scan;
+        _keyword = OffKeyword::Read([&](char const* letters) { return _scan.Skip(letters); });
+        if (!_keyword.isOff) {
+            _scan.Refuse(
+                fmt::format("the file starts with {}; OFF, COFF, NOFF, STOFF or CNOFF is "
+                            "needed",
+                            TextScanner::Quote(atStart.Word())));
+        }
+        if (_keyword.isHomogeneous)
+            _scan.Refuse("4OFF has homogeneous coordinates; divide by the fourth and write OFF");
+        if (_keyword.isOfAnyDimension)
+            _scan.Refuse("nOFF has coordinates of any dimension; write OFF, which has three");
+        if (_scan.Skip("BINARY"))
+            _scan.Refuse("'BINARY': binary OFF is not read; write it as text");
     }
 
     size_t Count(char const* what) {
@@ -57,30 +93,39 @@ private:
         }
     }
 
-    void ReadVertices(size_t count, bool hasColours) {
+    void ReadVertices(size_t count) {
         _scene.positions.reserve(3 * count);
-        if (hasColours) _scene.primvars.push_back({"color", 4, {}});
         for (size_t i = 0; i < count; ++i) {
             NextContentLine(fmt::format("vertex {} of {}", i, count).c_str());
             for (char const* axis : {"x", "y", "z"}) _scene.positions.push_back(_scan.Number(axis));
-            for (int c = 0; hasColours && c < 4; ++c) {
-                _scene.primvars[0].values.push_back(static_cast<float>(_scan.Number("a colour")));
+            for (int c = 0; _keyword.hasNormals && c < 3; ++c) _scan.Number("a normal");
+            if (_keyword.hasColours) ReadColour();
+            for (char const* axis : {"u", "v"}) {
+                if (_keyword.hasTexture) _scene.uvs.push_back(_scan.Number(axis));
             }
         }
-        if (hasColours) ScaleColours(_scene.primvars[0].values);
+        if (_keyword.hasColours && count > 0) {
+            ScaleWholeColours(_colours);
+            _scene.primvars.push_back({"color", _numColourChannels, std::move(_colours)});
+        }
         _scene.cage.numVertices = static_cast<Index>(count);
     }
 
-    /// Colours run from 0 to 1 or, as whole numbers, from 0 to 255; nothing but the numbers tells
-    /// which. They come out from 0 to 1, as the bytes of a PLY do.
-    static void ScaleColours(std::vector<float>& values) {
-        bool const areBytes = std::all_of(values.begin(), values.end(), [](float value) {
-            return value >= 0.0f && value <= 255.0f && value == std::floor(value);
-        });
-        bool const areShares =
-            std::all_of(values.begin(), values.end(), [](float value) { return value <= 1.0f; });
-        if (!areBytes || areShares) return;
-        for (float& value : values) value = static_cast<float>(value * (1.0 / 255));
+    /// Three or four numbers; which, the first vertex's line tells.
+    void ReadColour() {
+        int const numTexture = _keyword.hasTexture ? 2 : 0;
+        if (_numColourChannels == 0)
+            _numColourChannels = CountNumbersOfLine() - numTexture == 3 ? 3 : 4;
+        for (int c = 0; c < _numColourChannels; ++c)
+            _colours.push_back(static_cast<float>(_scan.Number("a colour")));
+    }
+
+    /// Of what is left of the line.
+    int CountNumbersOfLine() const {
+        TextScanner ahead = _scan;
+        int count = 0;
+        while (ahead.TryNumber()) ++count;
+        return count;
     }
 
     void ReadFaces(size_t count) {
@@ -105,9 +150,22 @@ private:
 
     TextScanner _scan;
     Scene& _scene;
+    OffKeyword _keyword;
+    int _numColourChannels = 0;
+    std::vector<float> _colours;
 };
 
 }  // namespace
+
+bool IsOff(std::string_view bytes) {
+    std::string_view text = TextScanner::WithoutMark(bytes);
+    auto const skip = [&](std::string_view letters) {
+        bool const isNext = text.starts_with(letters);
+        if (isNext) text.remove_prefix(letters.size());
+        return isNext;
+    };
+    return OffKeyword::Read(skip).isOff;
+}
 
 void ReadOff(std::string_view text, Scene& scene) {
     OffReader(text, scene).Read();

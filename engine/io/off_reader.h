@@ -7,10 +7,15 @@
 
 namespace limn::engine {
 
-/// Reads OFF (ASCII): "OFF", counts, positions, faces. Colours after a face's corners are skipped,
-/// COFF's vertex colours become the primvar "color".
+/// True for bytes that begin with the keyword of an OFF file, of any kind.
+bool IsOff(std::string_view bytes);
+
+/// Reads OFF (ASCII): the keyword, counts (behind it, too), positions, faces. What the keyword's
+/// letters name follows each position: normals (N), which are skipped, colours (C; 3 or 4 numbers),
+/// which become the primvar "color", and texture coordinates (ST). Colours after a face's corners
+/// are skipped.
 ///
-/// \throws Error  BadMesh, as "FILE:LINE: ..."
+/// \throws Error  BadMesh, as "FILE:LINE: ..."; 4OFF, nOFF and binary OFF are named
 void ReadOff(std::string_view text, Scene& scene);
 
 }  // namespace limn::engine

@@ -2,66 +2,50 @@
 #include "engine/io/ply_reader.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 #include <limits>
-#include <optional>
 #include <tuple>
+#include <unordered_map>
 
-#include "engine/io/text_scanner.h"
+#include "engine/io/ply_header.h"
+#include "engine/io/ply_values.h"
 
 namespace limn::engine {
 
 namespace {
 
-enum class Type { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float32, Float64 };
-
-std::optional<Type> ParseType(std::string_view name) {
-    struct Row {
-        char const *one, *other;
-        Type type;
-    };
-    constexpr Row kTypes[] = {
-        {"char", "int8", Type::Int8},        {"uchar", "uint8", Type::Uint8},
-        {"short", "int16", Type::Int16},     {"ushort", "uint16", Type::Uint16},
-        {"int", "int32", Type::Int32},       {"uint", "uint32", Type::Uint32},
-        {"float", "float32", Type::Float32}, {"double", "float64", Type::Float64}};
-    for (Row const& row : kTypes) {
-        if (name == row.one || name == row.other) return row.type;
-    }
-    return std::nullopt;
+bool IsIndexList(PlyProperty const& property) {
+    return property.countType &&
+           (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-constexpr size_t SizeOf(Type type) {
-    constexpr size_t kSizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
-    return kSizes[static_cast<int>(type)];
+/// The names of an element's properties, for messages.
+std::string ListProperties(PlyElement const& element) {
+    constexpr size_t kMaxListed = 8;
+    std::string names;
+    for (size_t i = 0; i < std::min(kMaxListed, element.properties.size()); ++i)
+        names += (i ? ", " : "") + TextScanner::Quote(element.properties[i].name);
+    if (element.properties.size() > kMaxListed) names += ", ...";
+    return names.empty() ? "none" : names;
 }
 
-struct Property {
-    std::string name;
-    Type type = Type::Float32;
-    std::optional<Type> countType;  // of a list
-};
-
-struct Element {
-    std::string name;
-    size_t count = 0;
-    std::vector<Property> properties;
-};
-
-/// Where values come from: words of text, or bytes.
 class PlyReader {
 public:
     PlyReader(std::string_view bytes, Scene& scene)
-        : _bytes(bytes), _scene(scene), _scan(bytes, scene.path) {}
+        : _scene(scene),
+          _scan(bytes, scene.path),
+          _header(ReadPlyHeader(_scan)),
+          _values(_scan, _header.format) {}
 
     void Read() {
-        ReadHeader();
-        for (Element const& element : _elements) {
+        CheckElements();
+        for (PlyElement const& element : _header.elements) {
+            _values.CheckRoom(element);
             if (element.name == "vertex")
                 ReadVertices(element);
             else if (element.name == "face")
                 ReadFaces(element);
+            else if (element.name == "tristrips")
+                ReadStrips(element);
             else
                 SkipElement(element);
         }
@@ -69,160 +53,49 @@ public:
     }
 
 private:
-    enum class Format { Text, LittleEndian, BigEndian };
-
-    [[noreturn]] void Refuse(std::string const& message) const {
-        if (_isInBody && _format != Format::Text) {
-            throw Error(ErrorCode::BadMesh,
-                        fmt::format("{}: {} {}: {}", _scene.path, _element, _index, message));
-        }
-        _scan.Refuse(message);
-    }
-
-    void ReadHeader() {
-        if (!_scan.NextLine() || _scan.Word() != "ply")
-            Refuse("the file does not start with 'ply'");
-        bool hasFormat = false;
-        for (;;) {
-            if (!_scan.NextLine()) Refuse("the header has no 'end_header'");
-            std::string_view const word = _scan.Word();
-            if (word == "end_header") break;
-            if (word == "format")
-                hasFormat = ReadFormat();
-            else if (word == "element")
-                ReadElement();
-            else if (word == "property")
-                ReadProperty();
-            else if (word != "comment" && word != "obj_info" && !word.empty()) {
-                Refuse(fmt::format("{} has no place in a PLY header", TextScanner::Quote(word)));
+    /// What is needed is in the header, in any order.
+    void CheckElements() {
+        PlyElement const* const vertices = _header.Find("vertex");
+        if (!vertices || vertices->count == 0)
+            _scan.Refuse("the header has no element 'vertex', or says that there are none");
+        for (char const* axis : {"x", "y", "z"}) {
+            if (!vertices->Has(axis)) {
+                _scan.Refuse(fmt::format("element vertex lacks '{}'; its properties are {}", axis,
+                                         ListProperties(*vertices)));
             }
         }
-        if (!hasFormat) Refuse("the header has no 'format' line");
-        _isInBody = true;
-        if (_format != Format::Text) _at = _bytes.size() - _scan.GetRest().size();
-    }
-
-    bool ReadFormat() {
-        std::string_view const word = _scan.Word();
-        if (word == "ascii")
-            _format = Format::Text;
-        else if (word == "binary_little_endian")
-            _format = Format::LittleEndian;
-        else if (word == "binary_big_endian")
-            _format = Format::BigEndian;
-        else
-            Refuse(fmt::format("format {} is not ascii, binary_little_endian or binary_big_endian",
-                               TextScanner::Quote(word)));
-        return true;
-    }
-
-    void ReadElement() {
-        Element element;
-        element.name = std::string(_scan.Word());
-        double const count = _scan.Number("an element's count");
-        if (count < 0 || count != std::floor(count) ||
-            count > std::numeric_limits<Index>::max() / 4) {
-            Refuse(fmt::format("element {} has count {}; 0 to {} are possible",
-                               TextScanner::Quote(element.name), count,
-                               std::numeric_limits<Index>::max() / 4));
+        if (!_header.Find("face") && !_header.Find("tristrips")) {
+            _scan.Refuse(
+                "the header has no element 'face' or 'tristrips': these are points; limn needs "
+                "polygons");
         }
-        element.count = static_cast<size_t>(count);
-        _elements.push_back(std::move(element));
-    }
-
-    void ReadProperty() {
-        if (_elements.empty()) Refuse("a property stands before the first element");
-        Property property;
-        std::string_view word = _scan.Word();
-        auto const type = [&](std::string_view name) {
-            auto const found = ParseType(name);
-            if (!found)
-                Refuse(fmt::format("property type {} is not known", TextScanner::Quote(name)));
-            return *found;
-        };
-        if (word == "list") {
-            property.countType = type(_scan.Word());
-            word = _scan.Word();
+        for (char const* name : {"face", "tristrips"}) {
+            PlyElement const* const faces = _header.Find(name);
+            if (!faces) continue;
+            auto const numLists =
+                std::count_if(faces->properties.begin(), faces->properties.end(), IsIndexList);
+            if (numLists == 1) continue;
+            _scan.Refuse(
+                fmt::format("element {} has {} lists 'vertex_indices'; one is needed; its "
+                            "properties are {}",
+                            name, numLists, ListProperties(*faces)));
         }
-        property.type = type(word);
-        property.name = std::string(_scan.Word());
-        _elements.back().properties.push_back(std::move(property));
+        _scene.cage.numVertices = static_cast<Index>(vertices->count);
     }
 
-    // -------- values
-
-    void BeginRow(Element const& element, size_t index) {
-        _element = element.name.c_str();
-        _index = index;
-        if (_format == Format::Text) {
-            do {
-                if (!_scan.NextLine()) {
-                    Refuse(fmt::format("the file ends before {} {} of {}", element.name, index,
-                                       element.count));
-                }
-            } while (_scan.AtEndOfLine());
-        }
-    }
-
-    double ReadValue(Type type, char const* what) {
-        if (_format == Format::Text) return _scan.Number(what);
-        size_t const size = SizeOf(type);
-        if (_bytes.size() - _at < size) Refuse("the file ends here; it seems cut short");
-        unsigned char raw[8];
-        std::memcpy(raw, _bytes.data() + _at, size);
-        _at += size;
-        if (_format == Format::BigEndian) std::reverse(raw, raw + size);
-        switch (type) {
-            case Type::Int8:
-                return As<int8_t>(raw);
-            case Type::Uint8:
-                return As<uint8_t>(raw);
-            case Type::Int16:
-                return As<int16_t>(raw);
-            case Type::Uint16:
-                return As<uint16_t>(raw);
-            case Type::Int32:
-                return As<int32_t>(raw);
-            case Type::Uint32:
-                return As<uint32_t>(raw);
-            case Type::Float32:
-                return As<float>(raw);
-            case Type::Float64:
-                return As<double>(raw);
-        }
-        return 0.0;
-    }
-
-    template <class T>
-    static double As(unsigned char const* raw) {
-        T value;
-        std::memcpy(&value, raw, sizeof value);
-        return static_cast<double>(value);
-    }
-
-    size_t ReadCount(Property const& property) {
-        double const count = ReadValue(*property.countType, "a list's length");
-        if (!(count >= 0) || count != std::floor(count) || count > 1e9) {
-            Refuse(fmt::format("list '{}' has length {}", property.name, count));
-        }
-        if (_format != Format::Text && count * static_cast<double>(SizeOf(property.type)) >
-                                           static_cast<double>(_bytes.size() - _at)) {
-            Refuse(fmt::format("list '{}' of length {} goes beyond the end of the file",
-                               property.name, count));
-        }
-        return static_cast<size_t>(count);
-    }
-
-    void SkipElement(Element const& element) {
-        CheckRoom(element);
+    void SkipElement(PlyElement const& element) {
         for (size_t i = 0; i < element.count; ++i) {
-            BeginRow(element, i);
-            for (Property const& property : element.properties) {
-                size_t const count = property.countType ? ReadCount(property) : 1;
-                for (size_t k = 0; k < count; ++k) ReadValue(property.type, property.name.c_str());
-            }
+            _values.BeginRow(element, i);
+            for (PlyProperty const& property : element.properties) SkipProperty(property);
         }
     }
+
+    void SkipProperty(PlyProperty const& property) {
+        size_t const count = _values.ReadCount(property);
+        for (size_t k = 0; k < count; ++k) _values.Read(property.type, property.name.c_str());
+    }
+
+    // -------- vertices
 
     /// Where a vertex property goes: position 0-2, texture 3-4, primvar channel, or nowhere.
     struct Target {
@@ -232,29 +105,26 @@ private:
         double scale = 1.0;
     };
 
-    Target FindTarget(Element const& element, Property const& property) {
+    Target FindTarget(PlyElement const& element, PlyProperty const& property) {
         std::string const& name = property.name;
-        auto const has = [&](char const* other) {
-            return std::any_of(element.properties.begin(), element.properties.end(),
-                               [&](Property const& p) { return p.name == other; });
-        };
         if (property.countType || name == "nx" || name == "ny" || name == "nz") return {};
         for (int c = 0; c < 3; ++c) {
             if (name == std::string(1, "xyz"[c])) return {Target::Position, c};
         }
         for (auto const& [u, v] : {std::pair{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}}) {
-            if (has(u) && has(v) && (name == u || name == v)) {
+            if (element.Has(u) && element.Has(v) && (name == u || name == v)) {
                 _hasVertexUVs = true;
                 return {Target::Texture, name == v};
             }
         }
         static char const* const kColours[] = {"red", "green", "blue", "alpha"};
+        bool const hasColour = element.Has("red") && element.Has("green") && element.Has("blue");
         for (int c = 0; c < 4; ++c) {
-            if (name != kColours[c] || !(has("red") && has("green") && has("blue"))) continue;
-            size_t const primvar = FindPrimvar("color", has("alpha") ? 4 : 3);
-            double const scale = property.type == Type::Uint8    ? 1.0 / 255
-                                 : property.type == Type::Uint16 ? 1.0 / 65535
-                                                                 : 1.0;
+            if (name != kColours[c] || !hasColour) continue;
+            size_t const primvar = FindPrimvar("color", element.Has("alpha") ? 4 : 3);
+            double const scale = property.type == PlyType::Uint8    ? 1.0 / 255
+                                 : property.type == PlyType::Uint16 ? 1.0 / 65535
+                                                                    : 1.0;
             return {Target::Value, c, primvar, scale};
         }
         return {Target::Value, 0, FindPrimvar(name, 1)};
@@ -264,122 +134,153 @@ private:
         for (size_t i = 0; i < _scene.primvars.size(); ++i) {
             if (_scene.primvars[i].name != name) continue;
             if (_scene.primvars[i].numChannels == numChannels) return i;
-            Refuse(
+            _scan.Refuse(
                 fmt::format("two vertex properties both make the primvar '{}'; rename one", name));
         }
         _scene.primvars.push_back({name, numChannels, {}});
         return _scene.primvars.size() - 1;
     }
 
-    void ReadVertices(Element const& element) {
+    void ReadVertices(PlyElement const& element) {
         std::vector<Target> targets;
-        bool hasAxis[3] = {false, false, false};
-        for (Property const& property : element.properties) {
+        for (PlyProperty const& property : element.properties)
             targets.push_back(FindTarget(element, property));
-            if (targets.back().kind == Target::Position) hasAxis[targets.back().channel] = true;
-        }
-        if (!hasAxis[0] || !hasAxis[1] || !hasAxis[2]) Refuse("element vertex lacks x, y or z");
-        CheckRoom(element);
         _scene.positions.resize(3 * element.count);
         if (_hasVertexUVs) _scene.uvs.resize(2 * element.count);
         for (Primvar& primvar : _scene.primvars) {
             primvar.values.resize(element.count * static_cast<size_t>(primvar.numChannels));
         }
         for (size_t i = 0; i < element.count; ++i) {
-            BeginRow(element, i);
+            _values.BeginRow(element, i);
             for (size_t p = 0; p < targets.size(); ++p)
                 ReadVertexValue(element.properties[p], targets[p], i);
         }
-        _scene.cage.numVertices = static_cast<Index>(element.count);
     }
 
-    void ReadVertexValue(Property const& property, Target const& target, size_t vertex) {
-        size_t const count = property.countType ? ReadCount(property) : 1;
-        for (size_t k = 0; k < count; ++k) {
-            double const value = ReadValue(property.type, property.name.c_str());
-            size_t const channel = static_cast<size_t>(target.channel);
-            if (target.kind != Target::Nowhere && !(std::abs(value) <= TextScanner::kLargest)) {
-                Refuse(fmt::format("property '{}' is {}; a number up to {:g} is needed",
-                                   property.name, value, TextScanner::kLargest));
-            }
-            if (target.kind == Target::Position) _scene.positions[3 * vertex + channel] = value;
-            if (target.kind == Target::Texture) _scene.uvs[2 * vertex + channel] = value;
-            if (target.kind == Target::Value) {
-                Primvar& primvar = _scene.primvars[target.primvar];
-                primvar.values[vertex * static_cast<size_t>(primvar.numChannels) + channel] =
-                    static_cast<float>(value * target.scale);
-            }
+    void ReadVertexValue(PlyProperty const& property, Target const& target, size_t vertex) {
+        if (target.kind == Target::Nowhere) return SkipProperty(property);
+        double const value = _values.Read(property.type, property.name.c_str());
+        size_t const channel = static_cast<size_t>(target.channel);
+        if (!(std::abs(value) <= TextScanner::kLargest)) {
+            _values.Refuse(fmt::format("property '{}' is {}; a number up to {:g} is needed",
+                                       property.name, value, TextScanner::kLargest));
+        }
+        if (target.kind == Target::Position) {
+            _scene.positions[3 * vertex + channel] = value;
+        } else if (target.kind == Target::Texture) {
+            _scene.uvs[2 * vertex + channel] = value;
+        } else {
+            Primvar& primvar = _scene.primvars[target.primvar];
+            primvar.values[vertex * static_cast<size_t>(primvar.numChannels) + channel] =
+                static_cast<float>(value * target.scale);
         }
     }
 
-    static bool IsIndexList(Property const& property) {
-        return property.countType &&
-               (property.name == "vertex_indices" || property.name == "vertex_index");
+    // -------- faces
+
+    enum class FaceProperty { Indices, Texcoord, TextureNumber, Other };
+
+    static FaceProperty Classify(PlyProperty const& property) {
+        if (IsIndexList(property)) return FaceProperty::Indices;
+        if (property.countType && property.name == "texcoord") return FaceProperty::Texcoord;
+        if (!property.countType && property.name == "texnumber") return FaceProperty::TextureNumber;
+        return FaceProperty::Other;
     }
 
-    /// A count in a header is a claim; what it needs at least must be in the file.
-    void CheckRoom(Element const& element) const {
-        size_t rowSize =
-            0;  // least bytes of a row: a digit and a space per word, or the sizes of the types
-        for (Property const& property : element.properties) {
-            bool const isText = _format == Format::Text;
-            rowSize +=
-                isText ? 2 : SizeOf(property.countType ? *property.countType : property.type);
-        }
-        size_t const rest =
-            _format == Format::Text ? _scan.GetRest().size() + 1 : _bytes.size() - _at;
-        if (rowSize == 0 ? element.count > 0 : rest / rowSize < element.count) {
-            Refuse(fmt::format("the file is too short for {} of element '{}'", element.count,
-                               element.name));
-        }
+    static std::vector<FaceProperty> ClassifyAll(PlyElement const& element) {
+        std::vector<FaceProperty> kinds;
+        for (PlyProperty const& property : element.properties) kinds.push_back(Classify(property));
+        return kinds;
     }
 
-    void ReadFaces(Element const& element) {
-        auto const numLists =
-            std::count_if(element.properties.begin(), element.properties.end(), IsIndexList);
-        if (numLists != 1)
-            Refuse(
-                fmt::format("element face has {} lists 'vertex_indices'; one is needed", numLists));
-        if (_scene.positions.empty())
-            Refuse("the faces stand before the vertices, or there are no vertices");
-        CheckRoom(element);
-        auto& cage = _scene.cage;
+    void ReadFaces(PlyElement const& element) {
+        auto const kinds = ClassifyAll(element);
         for (size_t i = 0; i < element.count; ++i) {
-            BeginRow(element, i);
+            _values.BeginRow(element, i);
             size_t size = 0;
             std::vector<double> texcoords;
-            for (Property const& property : element.properties) {
-                bool const isIndices = IsIndexList(property);
-                bool const isTexture = property.countType && property.name == "texcoord";
-                size_t const count = property.countType ? ReadCount(property) : 1;
-                if (isIndices) size = count;
-                for (size_t k = 0; k < count; ++k) {
-                    double const value = ReadValue(property.type, property.name.c_str());
-                    if (isIndices) cage.faceVertices.push_back(CheckIndex(value));
-                    if (isTexture) texcoords.push_back(CheckFinite(value));
+            for (size_t p = 0; p < kinds.size(); ++p) {
+                PlyProperty const& property = element.properties[p];
+                switch (kinds[p]) {
+                    case FaceProperty::Indices:
+                        size = ReadCorners(property);
+                        break;
+                    case FaceProperty::Texcoord:
+                        texcoords = ReadTexcoords(property);
+                        break;
+                    case FaceProperty::TextureNumber:
+                        AddToMaterial(_values.Read(property.type, property.name.c_str()));
+                        break;
+                    case FaceProperty::Other:
+                        SkipProperty(property);
                 }
             }
-            if (size < 3) Refuse(fmt::format("a face has {} corners; at least 3 are needed", size));
-            cage.faceSizes.push_back(static_cast<int>(size));
-            if (_format == Format::Text) _scene.faceLines.push_back(_scan.GetLineNumber());
+            if (size < 3)
+                _values.Refuse(fmt::format("a face has {} corners; at least 3 are needed", size));
+            AddFace(size);
             AddTexcoords(texcoords, size);
         }
     }
 
+    size_t ReadCorners(PlyProperty const& property) {
+        size_t const size = _values.ReadCount(property);
+        for (size_t k = 0; k < size; ++k) {
+            _scene.cage.faceVertices.push_back(
+                CheckIndex(_values.Read(property.type, property.name.c_str())));
+        }
+        return size;
+    }
+
+    std::vector<double> ReadTexcoords(PlyProperty const& property) {
+        std::vector<double> texcoords;
+        for (size_t k = _values.ReadCount(property); k > 0; --k)
+            texcoords.push_back(CheckFinite(_values.Read(property.type, property.name.c_str())));
+        return texcoords;
+    }
+
+    /// Of a face whose corners are there.
+    void AddFace(size_t size) {
+        _scene.cage.faceSizes.push_back(static_cast<int>(size));
+        if (_values.IsText()) _scene.faceLines.push_back(_values.GetLineNumber());
+    }
+
     Index CheckIndex(double value) const {
         if (!(value >= 0) || value >= _scene.cage.numVertices || value != std::floor(value)) {
-            Refuse(fmt::format("a face uses vertex {}; 0 to {} are possible", value,
-                               _scene.cage.numVertices - 1));
+            _values.Refuse(fmt::format("a face uses vertex {}; 0 to {} are possible", value,
+                                       _scene.cage.numVertices - 1));
         }
         return static_cast<Index>(value);
     }
 
     double CheckFinite(double value) const {
         if (!(std::abs(value) <= TextScanner::kLargest)) {
-            Refuse(fmt::format("a texture coordinate is {}; a number up to {:g} is needed", value,
-                               TextScanner::kLargest));
+            _values.Refuse(fmt::format("a texture coordinate is {}; a number up to {:g} is needed",
+                                       value, TextScanner::kLargest));
         }
         return value;
+    }
+
+    /// Puts the next face into the material of a texture's number; a negative one is none.
+    void AddToMaterial(double number) {
+        if (number != std::floor(number) ||
+            std::abs(number) > static_cast<double>(std::numeric_limits<Index>::max())) {
+            _values.Refuse(fmt::format("texnumber is {}; a whole number is needed", number));
+        }
+        FaceGroups& materials = _scene.groups[static_cast<size_t>(GroupKind::Material)];
+        materials.faceGroup.resize(_scene.cage.faceSizes.size(), -1);
+        Index group = -1;
+        if (number >= 0) {
+            auto const [found, isNew] = _materialOfTexture.try_emplace(
+                static_cast<Index>(number), static_cast<Index>(materials.names.size()));
+            if (isNew) materials.names.push_back(NameTexture(static_cast<size_t>(number)));
+            group = found->second;
+        }
+        materials.faceGroup.push_back(group);
+    }
+
+    std::string NameTexture(size_t number) const {
+        return number < _header.textureFiles.size() ? _header.textureFiles[number]
+                                                    : fmt::format("texture{}", number);
     }
 
     /// Corner coordinates become values, one for each distinct (vertex, u, v).
@@ -389,11 +290,56 @@ private:
             return;
         }
         if (texcoords.size() != 2 * size) {
-            Refuse(fmt::format("list 'texcoord' has {} numbers; {} are needed", texcoords.size(),
-                               2 * size));
+            _values.Refuse(fmt::format("list 'texcoord' has {} numbers; {} are needed",
+                                       texcoords.size(), 2 * size));
         }
         _cornerUVs.insert(_cornerUVs.end(), texcoords.begin(), texcoords.end());
     }
+
+    // -------- triangle strips
+
+    void ReadStrips(PlyElement const& element) {
+        for (size_t i = 0; i < element.count; ++i) {
+            _values.BeginRow(element, i);
+            for (PlyProperty const& property : element.properties) {
+                if (IsIndexList(property))
+                    ReadStrip(property);
+                else
+                    SkipProperty(property);
+            }
+        }
+    }
+
+    /// Each vertex makes a triangle with the two before it; every other one is turned round. A
+    /// negative index begins anew; a triangle that repeats a vertex only leads on to the next.
+    void ReadStrip(PlyProperty const& property) {
+        Index before[2] = {-1, -1};
+        bool isTurned = false;
+        for (size_t k = _values.ReadCount(property); k > 0; --k) {
+            double const value = _values.Read(property.type, property.name.c_str());
+            if (value < 0.0) {
+                before[0] = before[1] = -1;
+                isTurned = false;
+                continue;
+            }
+            Index const vertex = CheckIndex(value);
+            if (before[0] >= 0) {
+                AddTriangle(before[isTurned], before[!isTurned], vertex);
+                isTurned = !isTurned;
+            }
+            before[0] = before[1];
+            before[1] = vertex;
+        }
+    }
+
+    void AddTriangle(Index a, Index b, Index c) {
+        if (a == b || b == c || c == a) return;
+        _scene.cage.faceVertices.insert(_scene.cage.faceVertices.end(), {a, b, c});
+        AddFace(3);
+        ++_numFacesWithoutUVs;
+    }
+
+    // -------- the whole
 
     void Finish() {
         auto& cage = _scene.cage;
@@ -401,6 +347,7 @@ private:
             throw Error(ErrorCode::BadMesh,
                         fmt::format("{}: the file has no faces; limn needs polygons", _scene.path));
         }
+        FinishMaterials();
         if (!_cornerUVs.empty() && _numFacesWithoutUVs != 0) {
             _scene.warnings.push_back(fmt::format(
                 "{}: {} of {} faces have no 'texcoord', so those of the others are not used",
@@ -411,6 +358,12 @@ private:
         } else if (_hasVertexUVs) {
             cage.fvarChannels.push_back({cage.numVertices, cage.faceVertices});
         }
+    }
+
+    /// Strips have no texture numbers, and follow faces that may have.
+    void FinishMaterials() {
+        auto& ofFace = _scene.groups[static_cast<size_t>(GroupKind::Material)].faceGroup;
+        if (!ofFace.empty()) ofFace.resize(_scene.cage.faceSizes.size(), -1);
     }
 
     void MergeCornerUVs() {
@@ -441,18 +394,22 @@ private:
         cage.fvarChannels.push_back(std::move(channel));
     }
 
-    std::string_view _bytes;
     Scene& _scene;
     TextScanner _scan;
-    Format _format = Format::Text;
-    std::vector<Element> _elements;
-    bool _isInBody = false, _hasVertexUVs = false;
-    char const* _element = "header";
-    size_t _index = 0, _at = 0, _numFacesWithoutUVs = 0;
+    PlyHeader _header;
+    PlyValues _values;
+    bool _hasVertexUVs = false;
+    size_t _numFacesWithoutUVs = 0;
     std::vector<double> _cornerUVs;
+    std::unordered_map<Index, Index> _materialOfTexture;
 };
 
 }  // namespace
+
+bool IsPly(std::string_view bytes) {
+    std::string_view const text = TextScanner::WithoutMark(bytes);
+    return text.starts_with("ply\n") || text.starts_with("ply\r") || text.starts_with("ply ");
+}
 
 void ReadPly(std::string_view bytes, Scene& scene) {
     PlyReader(bytes, scene).Read();

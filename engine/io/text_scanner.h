@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -14,21 +16,30 @@
 namespace limn::engine {
 
 /// Walks the lines of a text file and the words of a line; numbers are read independent of the
-/// locale. It never copies the text. Errors carry "FILE:LINE: ".
+/// locale. A UTF-8 mark at the beginning is no part of the text, and lines end with LF, CR LF, LF
+/// CR or CR. It copies nothing but lines that are joined. Errors carry "FILE:LINE: ".
 class TextScanner {
 public:
-    TextScanner(std::string_view text, std::string const& path) : _rest(text), _path(path) {}
+    /// What a backslash at the end of a line means. One behind a '#' belongs to a comment and means
+    /// nothing.
+    enum class Backslash { IsText, JoinsLines };
 
-    /// Moves to the next line that exists; false at the end. A CR before the end of line is
-    /// dropped.
+    /// \throws Error  BadMesh: UTF-16
+    TextScanner(std::string_view text, std::string const& path,
+                Backslash backslash = Backslash::IsText)
+        : _text(WithoutMark(text)), _path(path), _joinsLines(backslash == Backslash::JoinsLines) {
+        if (_text.starts_with("\xff\xfe") || _text.starts_with("\xfe\xff")) {
+            _lineNumber = 1;
+            Refuse("this is not text in ASCII or UTF-8 but in UTF-16; UTF-8 is needed");
+        }
+    }
+
+    /// Moves to the next line that exists, joined with those that continue it; false at the end.
     bool NextLine() {
-        if (_rest.empty()) return false;
-        ++_lineNumber;
-        size_t const end = _rest.find('\n');
-        _endsWithNewline = end != std::string_view::npos;
-        _line = _rest.substr(0, end);
-        _rest.remove_prefix(_endsWithNewline ? end + 1 : _rest.size());
-        if (!_line.empty() && _line.back() == '\r') _line.remove_suffix(1);
+        if (_next == _text.size()) return false;
+        _line = TakeLine();
+        _lineNumber = _numLines;
+        if (_joinsLines && IsContinued(_line)) JoinLines();
         return true;
     }
 
@@ -40,6 +51,14 @@ public:
         std::string_view const word = _line.substr(0, end);
         _line.remove_prefix(end);
         return word;
+    }
+
+    /// Moves behind a word's beginning, if it stands here.
+    bool Skip(std::string_view beginning) {
+        SkipSpace();
+        if (!_line.starts_with(beginning)) return false;
+        _line.remove_prefix(beginning.size());
+        return true;
     }
 
     bool AtEndOfLine() {
@@ -55,37 +74,49 @@ public:
         return rest;
     }
 
-    /// A finite number. \throws Error BadMesh, naming `what`
+    /// A number of at most kLargest in magnitude. \throws Error BadMesh, naming `what`
     double Number(char const* what) {
         SkipSpace();
-        char const* begin = _line.data();
-        char const* const end = begin + _line.size();
-        if (begin != end && *begin == '+') ++begin;
-        double value = 0.0;
-        auto const [stop, code] = std::from_chars(begin, end, value);
-        bool const isWhole = stop == end || IsSpace(*stop);
-        if (code == std::errc() && isWhole && std::abs(value) <= kLargest) {
-            _line.remove_prefix(static_cast<size_t>(stop - _line.data()));
-            return value;
-        }
-        RefuseNumber(what, code, value);
+        ParsedNumber const parsed = ParseNumber(_line);
+        if (!parsed.IsUsable()) RefuseNumber(what, parsed);
+        _line.remove_prefix(parsed.length);
+        return parsed.value;
+    }
+
+    /// The same; nothing, and no move, where there is none.
+    std::optional<double> TryNumber() {
+        SkipSpace();
+        ParsedNumber const parsed = ParseNumber(_line);
+        if (!parsed.IsUsable()) return std::nullopt;
+        _line.remove_prefix(parsed.length);
+        return parsed.value;
     }
 
     /// Numbers beyond this would pass the range of float somewhere between a file and its maps.
     static constexpr double kLargest = 1e30;
 
-    [[noreturn]] void Refuse(std::string const& message) const {
-        throw Error(ErrorCode::BadMesh, fmt::format("{}:{}: {}", _path, _lineNumber, message));
+    [[noreturn]] void Refuse(std::string const& message) const { RefuseAt(_lineNumber, message); }
+    [[noreturn]] void RefuseAt(uint32_t line, std::string const& message) const {
+        throw Error(ErrorCode::BadMesh, fmt::format("{}:{}: {}", _path, line, message));
     }
 
     /// Cuts the line at a '#'.
     void DropComment() { _line = _line.substr(0, _line.find('#')); }
 
     /// The text after the current line.
-    std::string_view GetRest() const { return _rest; }
+    std::string_view GetRest() const { return _text.substr(_next); }
 
+    /// What follows the current line where that is no text: the line ends as the first one did, for
+    /// the next byte may look like a part of its end.
+    std::string_view GetBytesBehind() const {
+        std::string_view const rest = _text.substr(_endOfLine);
+        bool const isAlike = rest.starts_with(_firstLineEnd);
+        return rest.substr(isAlike ? _firstLineEnd.size() : std::min<size_t>(1, rest.size()));
+    }
+
+    /// Of the current line, or of the first of those that are joined in it; from 1.
     uint32_t GetLineNumber() const { return _lineNumber; }
-    bool EndsWithNewline() const { return _endsWithNewline; }
+    bool EndsWithNewline() const { return _endOfLine != _text.size(); }
     std::string const& GetPath() const { return _path; }
 
     static bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
@@ -97,26 +128,85 @@ public:
         return fmt::format("'{}{}'", shown, word.size() > 40 ? "..." : "");
     }
 
+    /// A number at the beginning of a text, as far as the next space.
+    struct ParsedNumber {
+        double value = 0.0;
+        size_t length = 0;
+        std::errc code{};
+
+        bool IsNumber() const { return code == std::errc() && std::isfinite(value); }
+        bool IsUsable() const { return code == std::errc() && std::abs(value) <= kLargest; }
+    };
+
+    static ParsedNumber ParseNumber(std::string_view text) {
+        bool const hasPlus = text.size() > 1 && text[0] == '+' && text[1] != '-';
+        char const* const begin = text.data() + hasPlus;
+        char const* const end = text.data() + text.size();
+        ParsedNumber parsed;
+        auto const [stop, code] = std::from_chars(begin, end, parsed.value);
+        parsed.length = static_cast<size_t>(stop - text.data());
+        parsed.code = stop == end || IsSpace(*stop) ? code : std::errc::invalid_argument;
+        return parsed;
+    }
+
+    /// The text behind a UTF-8 mark.
+    static std::string_view WithoutMark(std::string_view text) {
+        return text.starts_with("\xef\xbb\xbf") ? text.substr(3) : text;
+    }
+
 private:
+    /// The next line of the file as it stands there. Both kinds of ends are looked for once: a file
+    /// has one of them, and each line must not look for the other to the file's end.
+    std::string_view TakeLine() {
+        if (_nextFeed < _next || _numLines == 0) _nextFeed = Find('\n');
+        if (_nextReturn < _next || _numLines == 0) _nextReturn = Find('\r');
+        size_t const begin = _next;
+        _endOfLine = std::min(_nextFeed, _nextReturn);
+        bool const isPair = _nextFeed != _nextReturn &&
+                            std::max(_nextFeed, _nextReturn) == _endOfLine + 1 &&
+                            _endOfLine + 1 < _text.size();
+        _next = std::min(_endOfLine + (isPair ? 2 : 1), _text.size());
+        if (_numLines++ == 0) _firstLineEnd = _text.substr(_endOfLine, _next - _endOfLine);
+        return _text.substr(begin, _endOfLine - begin);
+    }
+
+    size_t Find(char c) const { return std::min(_text.find(c, _next), _text.size()); }
+
+    static bool IsContinued(std::string_view line) {
+        return !line.empty() && line.back() == '\\' && line.find('#') == std::string_view::npos;
+    }
+
+    /// The current line with those that continue it; a blank stands for each backslash.
+    void JoinLines() {
+        _joined.clear();
+        while (IsContinued(_line)) {
+            _joined.append(_line, 0, _line.size() - 1).append(" ");
+            _line = _next == _text.size() ? std::string_view() : TakeLine();
+        }
+        _line = _joined.append(_line);
+    }
+
     void SkipSpace() {
         while (!_line.empty() && IsSpace(_line.front())) _line.remove_prefix(1);
     }
 
-    [[noreturn]] void RefuseNumber(char const* what, std::errc code, double value) {
+    [[noreturn]] void RefuseNumber(char const* what, ParsedNumber const& parsed) {
         std::string_view const word = Word();
         if (word.empty()) Refuse(fmt::format("{} is missing", what));
-        if (code == std::errc::result_out_of_range ||
-            (code == std::errc() && std::isfinite(value) && std::abs(value) > kLargest)) {
+        if (parsed.code == std::errc::result_out_of_range || parsed.IsNumber()) {
             Refuse(fmt::format("{} is {}; at most {:g} in magnitude is possible", what, Quote(word),
                                kLargest));
         }
         Refuse(fmt::format("{} is {}; a finite number is needed", what, Quote(word)));
     }
 
-    std::string_view _rest, _line;
+    std::string_view _text, _line, _firstLineEnd;
     std::string const& _path;
-    uint32_t _lineNumber = 0;
-    bool _endsWithNewline = true;
+    bool _joinsLines;
+    size_t _next = 0, _endOfLine = 0;         // where the next line begins, and where this ends
+    size_t _nextFeed = 0, _nextReturn = 0;    // from _next on; the text's size without one
+    uint32_t _lineNumber = 0, _numLines = 0;  // of the statement's first line; of those taken
+    std::string _joined;
 };
 
 }  // namespace limn::engine

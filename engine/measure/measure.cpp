@@ -7,10 +7,13 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include "engine/scene/require_limit.h"
+#include "engine/scene/subdivision_names.h"
 #include "eval/surface/graded_points.h"
 #include "eval/surface/surface_sample.h"
 #include "far_ext/rows/points.h"
@@ -85,6 +88,7 @@ public:
 
 private:
     std::vector<std::string> FindReasons(MeasuredSurface surface) const;
+    bool EnclosesVolume() const;
 
     Model const& _model;
     Level const& _level;
@@ -167,6 +171,16 @@ std::vector<std::string> Surveyor::FindReasons(MeasuredSurface surface) const {
     return reasons;
 }
 
+/// Closed, manifold and wound one way: OpenSubdiv calls an edge that both its faces pass the same
+/// way not manifold, too.
+bool Surveyor::EnclosesVolume() const {
+    if (!_model.GetCage().holes.empty()) return false;
+    for (Index edge = 0; edge < _level.GetNumEdges(); ++edge) {
+        if (_level.IsEdgeBoundary(edge) || _level.IsEdgeNonManifold(edge)) return false;
+    }
+    return true;
+}
+
 Measurement Surveyor::Conclude(std::vector<Sums> const& ofComponents,
                                MeasuredSurface surface) const {
     Measurement result;
@@ -187,10 +201,7 @@ Measurement Surveyor::Conclude(std::vector<Sums> const& ofComponents,
         result.gaussBonnet.push_back(std::move(audit));
         result.eulerCharacteristic += euler[c];
     }
-    bool isClosed = true;
-    for (Index edge = 0; edge < _level.GetNumEdges(); ++edge)
-        isClosed &= _level.GetEdgeFaces(edge).size() == 2;
-    if (isClosed && _model.GetCage().holes.empty()) result.volume = all.volume;
+    if (EnclosesVolume()) result.volume = all.volume;
     result.area = all.area;
     if (surface == MeasuredSurface::Mesh) {  // boundary vertices have area, too
         auto const normals = eval::FindFaceNormals(_level, _model.GetPositions());
@@ -234,15 +245,27 @@ std::array<std::vector<double>, 2> FindLimitCurvature(Model const& model, Orient
 
 Measurement Measure(Model const& model, MeasuredSurface surface, Orientation orientation,
                     Job& job) {
-    Surveyor const surveyor(model, orientation, job);
     bool const isLimit = surface == MeasuredSurface::Limit;
-    return surveyor.Conclude(isLimit ? surveyor.SurveyLimit() : surveyor.SurveyMesh(), surface);
+    if (isLimit) RequireLimit(model);
+    Surveyor const surveyor(model, orientation, job);
+    Measurement found =
+        surveyor.Conclude(isLimit ? surveyor.SurveyLimit() : surveyor.SurveyMesh(), surface);
+    if (found.volume.value_or(0.0) < 0.0) {
+        Orientation const other =
+            orientation == Orientation::Right ? Orientation::Left : Orientation::Right;
+        job.Warn(
+            fmt::format("{}: the volume is negative: the surface is seen inside out; "
+                        "`orientation` {} turns it",
+                        model.GetPath(), kOrientationWords.GetWord(other)));
+    }
+    return found;
 }
 
 VertexCurvature FindVertexCurvature(Model const& model, MeasuredSurface surface,
                                     Orientation orientation, Job& job) {
     VertexCurvature found;
     if (surface == MeasuredSurface::Limit) {
+        RequireLimit(model);
         auto k = FindLimitCurvature(model, orientation, job);
         found.k1 = std::move(k[0]);
         found.k2 = std::move(k[1]);

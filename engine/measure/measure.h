@@ -25,7 +25,8 @@ struct CurvatureStatistics {
 
 struct Measurement {
     double area = 0.0;
-    std::optional<double> volume;  ///< of closed surfaces; positive where normals point out
+    std::optional<double> volume;  ///< of closed surfaces whose faces are wound one way; positive
+                                   ///< where normals point out
     int eulerCharacteristic = 0;
     eval::ThinPlateEnergy energy;
     CurvatureStatistics mean, gaussian;
@@ -33,6 +34,8 @@ struct Measurement {
     std::vector<GaussBonnetAudit> gaussBonnet;  ///< per component, as a bake's audit numbers them
 };
 
+/// Warns of a surface that is seen inside out.
+///
 /// \throws Stopped
 Measurement Measure(Model const& model, MeasuredSurface surface, Orientation orientation, Job& job);
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/scene/coincidence.h"
 #include "engine/scene/parity_sets.h"
 
 namespace limn::engine {
@@ -20,6 +21,13 @@ bool IsWalkedTwice(Level const& level, Index edge) {
     return level.GetFaceVertices(faces[0])[locals[0]] == level.GetFaceVertices(faces[1])[locals[1]];
 }
 
+/// A number that looks random, the same for the same vertex.
+uint64_t Scatter(Index vertex) {
+    uint64_t x = static_cast<uint64_t>(vertex) * 0x9e3779b97f4a7c15u;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    return x ^ (x >> 31);
+}
+
 class DefectFinder {
 public:
     explicit DefectFinder(Model const& model) : _model(model), _level(model.GetLevel()) {}
@@ -27,7 +35,9 @@ public:
     std::vector<Defect> Find() {
         FindEdgeDefects();
         FindFaceDefects();
+        FindDoubledFaces();
         FindVertexDefects();
+        FindCoincidentVertices();
         FindTagDefects();
         return std::move(_defects);
     }
@@ -102,6 +112,81 @@ private:
                                        Count(repeated.count, "face uses", "faces use"),
                                        _model.NameFace(repeated.element));
         _defects.push_back(repeated);
+    }
+
+    std::vector<Index> SortedVertices(Index face) const {
+        auto const vertices = _level.GetFaceVertices(face);
+        std::vector<Index> sorted(vertices.begin(), vertices.end());
+        std::sort(sorted.begin(), sorted.end());
+        return sorted;
+    }
+
+    /// An earlier face with the same vertices, in whatever order; -1 without one. Such faces share
+    /// all their edges, so one edge has them all; sums over vertices rule out nearly all others.
+    Index FindTwin(Index face, std::vector<uint64_t> const& sums) const {
+        for (Index other : _level.GetEdgeFaces(_level.GetFaceEdges(face)[0])) {
+            if (other < face && sums[other] == sums[face] &&
+                SortedVertices(other) == SortedVertices(face))
+                return other;
+        }
+        return -1;
+    }
+
+    void FindDoubledFaces() {
+        std::vector<uint64_t> sums(static_cast<size_t>(_level.GetNumFaces()), 0);
+        for (Index face = 0; face < _level.GetNumFaces(); ++face) {
+            for (Index vertex : _level.GetFaceVertices(face)) sums[face] += Scatter(vertex);
+        }
+        Defect doubled{"doubled_face", -1, 0, 0, {}};
+        Index firstTwin = -1;
+        for (Index face = 0; face < _level.GetNumFaces(); ++face) {
+            Index const twin = FindTwin(face, sums);
+            if (twin < 0 || doubled.count++ > 0) continue;
+            doubled.element = face;
+            firstTwin = twin;
+        }
+        if (doubled.count == 0) return;
+        doubled.line = LineOf(doubled.element);
+        doubled.message = fmt::format(
+            "{} the vertices of another one, first {} those of {}; leave one of them out",
+            Count(doubled.count, "face has", "faces have"), _model.NameFace(doubled.element),
+            _model.NameFace(firstTwin));
+        _defects.push_back(doubled);
+    }
+
+    std::vector<char> FindBoundary() const {
+        std::vector<char> isBoundary(static_cast<size_t>(_level.GetNumVertices()), 0);
+        for (Index edge = 0; edge < _level.GetNumEdges(); ++edge) {
+            if (_level.GetEdgeFaces(edge).size() != 1) continue;
+            for (Index vertex : _level.GetEdgeVertices(edge)) isBoundary[vertex] = 1;
+        }
+        return isBoundary;
+    }
+
+    /// Sheets that touch without being joined. Welding says itself what it leaves apart.
+    void FindCoincidentVertices() {
+        if (_model.GetWeld()) return;
+        auto const groupOf = GroupCoincident(_model.GetPositions(), FindBoundary(), 0.0);
+        Defect coincident{"coincident_vertices", -1, 0, 0, {}};
+        std::vector<char> isCounted(groupOf.size(), 0);
+        Index second = -1;
+        for (Index vertex = 0; vertex < static_cast<Index>(groupOf.size()); ++vertex) {
+            Index const first = groupOf[vertex];
+            if (first == vertex) continue;
+            coincident.count += isCounted[first] ? 1 : 2;
+            isCounted[first] = 1;
+            if (second < 0 || first < coincident.element) {
+                coincident.element = first;
+                second = vertex;
+            }
+        }
+        if (coincident.count == 0) return;
+        coincident.line = LineOf(_level.GetVertexFaces(coincident.element)[0]);
+        coincident.message = fmt::format(
+            "{} boundary vertices coincide with others, first vertex {} with {}: sheets that only "
+            "touch come apart as they are subdivided; `weld` 0 joins them",
+            coincident.count, coincident.element, second);
+        _defects.push_back(coincident);
     }
 
     void FindVertexDefects() {

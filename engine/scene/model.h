@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,6 +48,7 @@ public:
     std::vector<double> const& GetUVs() const { return _parts->scene.uvs; }
     std::vector<Primvar> const& GetPrimvars() const { return _parts->scene.primvars; }
     std::array<FaceGroups, 3> const& GetGroups() const { return _parts->scene.groups; }
+    std::optional<WeldRecord> const& GetWeld() const { return _parts->scene.weld; }
     std::vector<uint32_t> const& GetFaceLines() const { return _parts->scene.faceLines; }
 
     /// The unrefined topology; its base level.

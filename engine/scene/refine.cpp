@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/scene/scene_checks.h"
 #include "eval/differential/subdivide_values.h"
 #include "eval/surface/vertex_limits.h"
 #include "far_ext/error.h"
@@ -49,6 +50,7 @@ Primvar RefinePrimvar(Far::TopologyRefiner const& refiner, Primvar const& primva
 /// Refined vertices at their limit. Vertices without a face that has one stay.
 std::vector<double> MoveToLimit(Scene const& fine, Job& job) {
     auto const refiner = far_ext::CreateRefiner(fine.cage);
+    NamingMesh(fine.path, [&] { eval::LimitSurface::CheckSize(*refiner); });
     eval::LimitSurface const surface(*refiner);
     return eval::EvaluateVertexLimits(surface, fine.positions, 3, eval::FaceTree::kLimitDepth,
                                       [&] { job.CheckStopped(); })

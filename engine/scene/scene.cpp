@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/scene/scene.h"
 
-#include <algorithm>
+#include <array>
 #include <iterator>
 #include <sstream>
+#include <unordered_set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -45,28 +46,35 @@ void ForEachName(Scene const& scene, Visit visit) {
 
 std::vector<std::string> ListGroups(Scene const& scene) {
     std::vector<std::string> all;
+    std::unordered_set<std::string> known;
     ForEachName(scene, [&](FaceGroups const&, Index, std::string const& name) {
-        if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+        if (known.insert(name).second) all.push_back(name);
     });
     return all;
 }
 
 std::vector<char> SelectGroups(Scene const& scene, std::vector<std::string> const& names) {
     auto const all = ListGroups(scene);
+    std::unordered_set<std::string> const known(all.begin(), all.end());
     for (std::string const& name : names) {
-        if (std::find(all.begin(), all.end(), name) != all.end()) continue;
+        if (known.contains(name)) continue;
         throw Error(ErrorCode::BadOption,
                     fmt::format("`groups`: '{}' has no group '{}'; it has: {}", scene.path, name,
                                 all.empty() ? "none" : fmt::format("{}", fmt::join(all, ", "))));
     }
-    std::vector<char> selected(scene.cage.faceSizes.size(), 0);
+    std::unordered_set<std::string> const wanted(names.begin(), names.end());
+    std::array<std::vector<char>, 3> isWanted;  // per kind and entry
+    for (size_t kind = 0; kind < isWanted.size(); ++kind)
+        isWanted[kind].assign(scene.groups[kind].names.size(), 0);
     ForEachName(scene, [&](FaceGroups const& groups, Index entry, std::string const& name) {
-        if (std::find(names.begin(), names.end(), name) == names.end()) return;
-        if (groups.faceGroup.empty()) return;  // named, but no face follows
-        for (size_t face = 0; face < selected.size(); ++face) {
-            if (groups.faceGroup[face] == entry) selected[face] = 1;
-        }
+        if (wanted.contains(name)) isWanted[&groups - scene.groups.data()][entry] = 1;
     });
+    std::vector<char> selected(scene.cage.faceSizes.size(), 0);
+    for (size_t kind = 0; kind < isWanted.size(); ++kind) {
+        auto const& ofFace = scene.groups[kind].faceGroup;  // empty: named, but no face follows
+        for (size_t face = 0; face < ofFace.size(); ++face)
+            selected[face] |= ofFace[face] >= 0 && isWanted[kind][ofFace[face]];
+    }
     return selected;
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,13 @@ struct FaceGroups {
     std::vector<Index> faceGroup;  ///< per face: index into names, or -1
 };
 
+/// What welding has made of a scene.
+struct WeldRecord {
+    double tolerance = 0.0;
+    Index numJoined = 0;     ///< vertices that are parts of others now
+    Index numLeftApart = 0;  ///< vertices that coincide with others all the same
+};
+
 /// A mesh as a file described it: topology with tags, positions, UVs, groups, primvars.
 struct Scene {
     std::string path;    ///< as the user gave it, for messages
@@ -42,6 +50,8 @@ struct Scene {
     std::array<FaceGroups, 3> groups;  ///< by GroupKind
     std::vector<Primvar> primvars;
     std::vector<uint32_t> faceLines;  ///< line of each face in a text file; empty otherwise
+
+    std::optional<WeldRecord> weld;  ///< of engine/scene/weld.h
 
     /// Which options the file itself set by tags; whoever asks for others overrides them.
     bool hasBoundaryTag = false, hasFVarTag = false;

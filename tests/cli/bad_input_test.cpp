@@ -160,6 +160,77 @@ INSTANTIATE_TEST_SUITE_P(Of, ExtremeSizes,
                                          Extreme{"SmallInHalf", "1e-18", {"--half"}, true}),
                          [](auto const& instance) { return instance.param.name; });
 
+TEST_F(Cli, TextureCoordinatesTooFarAwayAreRefusedByFace) {
+    std::string const mesh = folder.Write(
+        "m.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+        "vt 1e30 0\nusemtl near\nf 1/1 2/2 3/3 4/4\nusemtl far\nf 2/2 5/5 6/5 3/3\n");
+    for (std::string const output : {"a.exr", "a.<UDIM>.exr"}) {
+        ExpectError(Bake(mesh, output), 3,
+                    "m.obj: face 1 (line 15) has a texture coordinate of 1e+30; up to 10000 in "
+                    "magnitude can be baked");
+        EXPECT_EQ(folder.List(), (Words{"m.obj"}));
+    }
+    EXPECT_EQ(Bake(mesh, "a.exr", {"--groups", "near"}).status, 0);
+}
+
+/// One face of many corners on a circle, with texture coordinates.
+std::string MakePolygon(int numCorners) {
+    std::string text, face = "f";
+    for (int i = 1; i <= numCorners; ++i) {
+        double const angle = 2.0 * std::acos(-1.0) * i / numCorners;
+        text += fmt::format("v {0} {1} 0\nvt {0} {1}\n", 0.5 + 0.4 * std::cos(angle),
+                            0.5 + 0.4 * std::sin(angle));
+        face += fmt::format(" {0}/{0}", i);
+    }
+    return text + face + "\n";
+}
+
+/// Triangles round a vertex.
+std::string MakeFan(int numFaces) {
+    std::string text = MakePolygon(numFaces);
+    text = text.substr(0, text.find("f ")) + "v 0.5 0.5 1\nvt 0.5 0.5\n";
+    for (int i = 1; i <= numFaces; ++i)
+        text += fmt::format("f {0}/{0} {1}/{1} {2}/{2}\n", numFaces + 1, i, i % numFaces + 1);
+    return text;
+}
+
+TEST_F(Cli, LargePolygonsAndValencesAreRefusedByNameWhereALimitIsAskedFor) {
+    std::string const polygon = folder.Write("polygon.obj", MakePolygon(1000)),
+                      fan = folder.Write("fan.obj", MakeFan(1024)),
+                      places = folder.Write("p.csv", "face,s,t\n0,0.25,0.25\n");
+    for (auto const& [mesh, reason] :
+         {std::pair(polygon,
+                    "polygon.obj: face 0 has 1000 corners; a limit surface takes up to 256"),
+          std::pair(fan, "fan.obj: vertex 1024 has 1024 faces; a limit surface takes up to 512")}) {
+        ExpectError(Bake(mesh, "a.exr"), 3, reason);
+        ExpectError(Limn({"eval", mesh, "--at", places}), 3, reason);
+        ExpectError(Limn({"measure", mesh}), 3, reason);
+        ExpectError(Limn({"fit", mesh, "-o", folder / "a.obj"}), 3, reason);
+        ExpectError(Limn({"refine", mesh, "-o", folder / "a.obj", "--limit", "--levels", "0"}), 3,
+                    reason);
+        EXPECT_EQ(Limn({"info", mesh}).status, 0);
+        EXPECT_EQ(Limn({"refine", mesh, "-o", folder / "b.obj"}).status, 0);
+    }
+}
+
+TEST_F(Cli, DeepJsonIsRefusedInAShortLine) {
+    std::string const edit = folder.Write(
+        "e.json", "{\"filter\": " + std::string(60000, '[') + "1" + std::string(60000, ']') + "}");
+    std::string const error =
+        ExpectError(Limn({"refine", Shape("catmark_cube"), "-o", folder / "a.obj", "--space",
+                          "differential", "--edit", edit}),
+                    3, "e.json: values are nested more than 4 deep");
+    EXPECT_LT(error.size(), 200u);
+}
+
+TEST_F(Cli, FilesOfOtherKindsAreNamed) {
+    ExpectError(Limn({"info", folder.Write("a.obj", "#usda 1.0\n")}), 3,
+                "a.obj: looks like USD: OBJ, PLY or OFF is needed");
+    ExpectError(Limn({"eval", Shape("catmark_cube"), "--at", folder.Write("p.csv", "PK\x03\x04")}),
+                3, "p.csv: looks like ZIP");
+}
+
 // -------- status 5
 
 TEST_F(Cli, MissingInputIsStatus5) {

@@ -225,37 +225,36 @@ TEST(EditReader, WhatItCannotUseIsNamed) {
         std::string::npos);
     EXPECT_NE(refuse(R"({"curvature": 7})").find("no list"), std::string::npos);
     EXPECT_NE(refuse(R"({"filter": )" + std::string(60000, '[') + std::string(60000, ']') + "}")
-                  .find("nested more than 16 deep"),
+                  .find("nested more than 4 deep"),
               std::string::npos);
     for (std::string const key : {"curvature", "filter", "rotate", "other\n"}) {
         std::string const message =
             refuse("{\"" + key + "\": [{\"vertex\": \"" + std::string(100000, 'x') + "\"}]}");
         EXPECT_LT(message.size(), folder.GetPath().size() + 200) << key;
     }
+    EXPECT_NE(refuse("{\n\"curvature\": [}").find("line 2 is no JSON"), std::string::npos);
+    EXPECT_NE(refuse(R"({"curvature": 1e999})").find("a number is too large"), std::string::npos);
 }
 
-TEST(Polylines, WhatIsReadIsWritten) {
+TEST(EditReader, DeepAndLongValuesAreRefusedInAShortLine) {
     test::TemporaryFolder const folder;
-    std::string const path =
-        folder.Write("in.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0.1\nl 1 2 3 1\nl 1/1 -1 # open\n");
-    auto const curves = engine::ReadPolylines(path);
-    ASSERT_EQ(curves.size(), 2u);
-    EXPECT_TRUE(curves[0].isClosed);
-    EXPECT_FALSE(curves[1].isClosed);
-    engine::WritePolylines(folder / "out.obj", curves, Precision::Double);
-    auto const again = engine::ReadPolylines(folder / "out.obj");
-    ASSERT_EQ(again.size(), 2u);
-    EXPECT_EQ(again[0].points[2][2], 0.1);
-    EXPECT_EQ(again[1].points.size(), 2u);
     auto const refuse = [&](std::string const& text) {
-        std::string const bad = folder.Write("bad.obj", text);
-        return test::RefusalOf([&] { engine::ReadPolylines(bad); });
+        std::string const path = folder.Write("edit.json", text);
+        std::string const message =
+            test::RefusalOf([&] { engine::ReadCurvatureEdit(path); }).substr(path.size());
+        EXPECT_LT(message.size(), 200u);
+        EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+        return message;
     };
-    EXPECT_NE(
-        refuse("v 0 0 0\nv 1 0 0\nl 1 3\n").find("bad.obj:3: a polyline's vertex index is '3'"),
-        std::string::npos);
-    EXPECT_NE(refuse("v 0 0 0\nv 1 0 0\nl 1 2 1\n").find("at least 3"), std::string::npos);
-    EXPECT_NE(refuse("v 0 0 0\nv 1 0 0\n").find("no polylines"), std::string::npos);
+    std::string const deep(60000, '['), end(60000, ']');
+    EXPECT_EQ(refuse("{\"filter\": " + deep + end + "}"), ": values are nested more than 4 deep");
+    EXPECT_EQ(refuse(deep), ": values are nested more than 4 deep");
+    std::string numbers = "1";
+    for (int i = 0; i < 10000; ++i) numbers += ", 1";
+    EXPECT_NE(refuse("{\"curvature\": [[" + numbers + "]]}").find("has no number 'vertex'"),
+              std::string::npos);
+    refuse("{\"" + std::string(10000, 'k') + "\": 1}");
+    refuse("{\"filter\": \"a\\nb\"}");
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ TEST(MeshReader, ChoosesByEndingAndThenByFirstBytes) {
     for (std::string const name : {"a.off", "a.OFF", "a.mesh"}) {
         EXPECT_EQ(engine::ReadMesh(folder.Write(name, kQuad)).cage.numVertices, 4) << name;
     }
-    for (std::string const name : {"a.obj", "a.OBJ", "a.PLY"}) {
+    for (std::string const name : {"a.obj", "a.OBJ", "a.PLY"}) {  // which contradict
         EXPECT_THROW(engine::ReadMesh(folder.Write(name, kQuad)), Error) << name;
     }
 }

@@ -227,6 +227,22 @@ TEST(MeshWriter, PlyKeepsPrimvars) {
     }
 }
 
+TEST(MeshWriter, ObjKeepsColours) {
+    for (int numChannels : {3, 4}) {
+        Scene scene = test::MakeCube();
+        scene.primvars = {{"color", numChannels, {}}};
+        for (int i = 0; i < 8 * numChannels; ++i)
+            scene.primvars[0].values.push_back(static_cast<float>(i) / 7);
+        Scene const back = RoundTrip(scene, "a.obj", Precision::Float);
+        ASSERT_EQ(back.primvars.size(), 1u);
+        EXPECT_EQ(back.primvars[0].numChannels, numChannels);
+        EXPECT_EQ(back.primvars[0].values, scene.primvars[0].values);
+        EXPECT_EQ(back.positions, scene.positions);
+        test::TemporaryFolder const folder;
+        EXPECT_TRUE(engine::WriteMesh(folder / "a.obj", scene, Precision::Float).empty());
+    }
+}
+
 TEST(MeshWriter, WhatAFormatCannotHoldIsSaid) {
     Scene scene = test::MakeCube();
     scene.cage.creaseVertexPairs = {0, 1};
@@ -240,8 +256,9 @@ TEST(MeshWriter, WhatAFormatCannotHoldIsSaid) {
                                   ": PLY holds no creases, corners or holes; they are left out"});
     EXPECT_TRUE(write("a.obj").empty());
     scene.primvars = {{"quality", 1, std::vector<float>(8)}};
-    EXPECT_EQ(write("a.obj"), std::vector<std::string>{
-                                  folder / "a.obj" + ": OBJ holds no primvars; they are left out"});
+    EXPECT_EQ(write("a.obj"),
+              std::vector<std::string>{folder / "a.obj" +
+                                       ": OBJ holds no primvars but colours; they are left out"});
 }
 
 TEST(MeshWriter, OtherEndingsAreRefusedAndLeaveNothing) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/io/obj_reader.h"
 
+#include <algorithm>
+#include <regex>
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -109,6 +112,85 @@ TEST(ObjReader, NumbersDoNotDependOnTheLocale) {
     Scene const scene = Parse("v 1.5 2.25 3.125\n" + kQuad);
     EXPECT_EQ(scene.positions[0], 1.5);
     EXPECT_EQ(scene.positions[2], 3.125);
+}
+
+TEST(ObjReader, AnyLineEndChangesNothing) {
+    for (std::string const end : {"\r", "\n\r"}) {
+        Scene const other = Parse(std::regex_replace(kQuad + kQuad, std::regex("\n"), end));
+        ExpectSameMesh(Parse(kQuad + kQuad), other);
+        EXPECT_EQ(other.faceLines, (std::vector<uint32_t>{5, 10}));
+    }
+}
+
+TEST(ObjReader, LinesJoinedByBackslashesAreOneFaceAndKeepTheirNumbers) {
+    Scene const scene =
+        Parse(kQuadVertices + "f 1 2 \\\n 3\\\n4\n# C:\\\nf 1 2 3\nt crease \\\n2/1/0 0 1 2\n");
+    EXPECT_EQ(scene.cage.faceVertices, (std::vector<Index>{0, 1, 2, 3, 0, 1, 2}));
+    EXPECT_EQ(scene.faceLines, (std::vector<uint32_t>{5, 9}));
+    EXPECT_EQ(scene.cage.creaseSharpness, (std::vector<float>{2}));
+}
+
+TEST(ObjReader, FreeFormGeometryIsNamedInOneWarning) {
+    Scene const scene = Parse(kQuad + "vp 0 0\ncstype bspline\ncurv 0 1 1 2\nvp 1 1\n");
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_EQ(scene.warnings[0],
+              "mesh.obj:6: curves and surfaces in free form have no effect (export polygons): "
+              "4 lines ('vp', 'cstype', 'curv')");
+}
+
+TEST(ObjReader, WordsThatObjDoesNotHaveAreNamedInOneWarning) {
+    std::string text = kQuad + "vt 0 0\nvn 0 0 1\ns off\nl 1 2\np 1\nmtllib a.mtl\nvf 1 2 3\n";
+    for (int i = 0; i < 20; ++i) text += fmt::format("word{} 1\n", i);
+    Scene const scene = Parse(text);
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_EQ(scene.warnings[0],
+              "mesh.obj:12: OBJ has no such statement, so it has no effect: 21 lines ('vf', "
+              "'word0', 'word1', 'word2', 'word3', 'word4', ...)");
+}
+
+// -------- colours
+
+TEST(ObjReader, ColoursBehindPositionsBecomeAPrimvar) {
+    Scene const scene =
+        Parse("v 0 0 0 1 0.5 0.25\nv 1 0 0 0 0 0 # black\nv 0 1 0 1 1 1\nf 1 2 3\n");
+    ASSERT_EQ(scene.primvars.size(), 1u);
+    EXPECT_EQ(scene.primvars[0].name, "color");
+    EXPECT_EQ(scene.primvars[0].numChannels, 3);
+    EXPECT_EQ(scene.primvars[0].values, (std::vector<float>{1, 0.5f, 0.25f, 0, 0, 0, 1, 1, 1}));
+    EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(ObjReader, ColoursMayHaveAnAlphaOrBeBytes) {
+    auto const colours = [](std::string const& first) {
+        return Parse("v 0 0 0 " + first + "\nv 1 0 0 " + first + "\nv 0 1 0 " + first +
+                     "\nf 1 2 3\n")
+            .primvars.at(0);
+    };
+    EXPECT_EQ(colours("0 0.5 1 0.25").numChannels, 4);
+    EXPECT_EQ(colours("0 0.5 1 0.25").values[3], 0.25f);
+    EXPECT_EQ(colours("255 51 0").values[1], 0.2f);  // 51/255
+}
+
+TEST(ObjReader, AWeightBehindAPositionIsNoColour) {
+    Scene const scene = Parse("v 0 0 0 1\nv 1 0 0 1.0\nv 0 1 0 0.5\nf 1 2 3\n");
+    EXPECT_TRUE(scene.primvars.empty());
+    EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(ObjReader, ColoursOfSomeVerticesAreLeftOutAndAWarningSaysSo) {
+    Scene const scene = Parse("v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_TRUE(scene.primvars.empty());
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_NE(scene.warnings[0].find("2 of 3 vertices have no colour"), std::string::npos);
+}
+
+TEST(ObjReader, WhatIsNoColourBehindAPositionIsNamedInOneWarning) {
+    Scene const scene = Parse("v 0 0 0 what\nv 1 0 0 1 2\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_TRUE(scene.primvars.empty());
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_NE(scene.warnings[0].find("mesh.obj:1: what stands behind x, y and z of 2 vertices"),
+              std::string::npos)
+        << scene.warnings[0];
 }
 
 // -------- texture coordinates
@@ -290,6 +372,27 @@ TEST(ObjReader, TagsItCannotHonourAreNamedInWarnings) {
     }
 }
 
+TEST(ObjReader, TagsWithoutAnEffectMakeFewWarningsHoweverManyThereAre) {
+    std::string text = kQuad;
+    for (int i = 0; i < 1000; ++i) text += fmt::format("t sparkle 1/0/0 3\nt tag{} 1/0/0 3\n", i);
+    Scene const scene = Parse(text);
+    EXPECT_LT(scene.warnings.size(), 20u);
+    EXPECT_EQ(scene.warnings.at(0),
+              "mesh.obj:6: tag 'sparkle' is not known and has no effect, nor have 999 more");
+}
+
+// Looking a name up among all others, or all faces up for each name, would take minutes.
+TEST(ObjReader, ManyGroupsTakeTimeInProportion) {
+    constexpr int kCount = 100000;
+    std::string text = kQuadVertices;
+    for (int i = 0; i < kCount; ++i) text += fmt::format("g all part{}\nf 1 2 3\n", i);
+    Scene const scene = Parse(text);
+    EXPECT_EQ(engine::ListGroups(scene).size(), kCount + 1u);
+    auto const selected = engine::SelectGroups(scene, {"all"});
+    EXPECT_EQ(std::count(selected.begin(), selected.end(), 1), kCount);
+    EXPECT_EQ(engine::SelectGroups(scene, {"part7"})[7], 1);
+}
+
 // -------- refusals: file and line, what is wrong, what would be right
 
 class ObjRefusal : public testing::TestWithParam<Refusal> {};
@@ -371,10 +474,14 @@ INSTANTIATE_TEST_SUITE_P(
                 kQuadVertices + "vt 0 0\nf 1/1 2 3/1\n",
                 "mesh.obj:6: ",
                 {"2 of a face's 3", "all or none"}},
-        Refusal{"LineContinuation",
-                kQuadVertices + "f 1 2 \\\n3 4\n",
+        Refusal{"JoinedLines",
+                kQuadVertices + "f 1 2 \\\n3 \\\n5\nf 1 2 3\n",
                 "mesh.obj:5: ",
-                {"integer is needed"}},
+                {"vertex index is '5'"}},
+        Refusal{"FreeFormOnly",
+                kQuadVertices + "cstype bezier\ndeg 3 3\nsurf 0 1 0 1 1 2 3 4\nend\n",
+                "mesh.obj:8: ",
+                {"no faces", "free form", "polygons"}},
         Refusal{"FaceWithTwoCorners",
                 kQuadVertices + "f 1 2\n",
                 "mesh.obj:5: ",

@@ -41,6 +41,39 @@ TEST(OffReader, CommentsEmptyLinesAndCountsBesideTheKeywordChangeNothing) {
     EXPECT_EQ(scene.cage.faceVertices, Parse(kQuad).cage.faceVertices);
 }
 
+TEST(OffReader, CountsMayStickToTheKeyword) {
+    std::string text = kQuad;
+    text.erase(3, 1);  // OFF4 1 0
+    EXPECT_EQ(Parse(text).cage.faceVertices, Parse(kQuad).cage.faceVertices);
+    EXPECT_EQ(Parse("\xef\xbb\xbf" + text).positions, Parse(kQuad).positions);
+}
+
+TEST(OffReader, NormalsAreSkipped) {
+    Scene const scene = Parse("NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n");
+    EXPECT_EQ(scene.positions, (std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0}));
+    EXPECT_TRUE(scene.primvars.empty());
+}
+
+TEST(OffReader, TextureCoordinatesOfStoffAreUVs) {
+    Scene const scene = Parse("STOFF\n3 1 0\n0 0 0 .25 .5\n1 0 0 1 0\n0 1 0 0 1\n3 0 2 1\n");
+    EXPECT_EQ(scene.uvs, (std::vector<double>{0.25, 0.5, 1, 0, 0, 1}));
+    EXPECT_EQ(scene.cage.fvarChannels.at(0).numValues, 3);
+    EXPECT_EQ(scene.cage.fvarChannels.at(0).valueIndices, (std::vector<Index>{0, 2, 1}));
+}
+
+// Geomview's order: position, normal, colour, texture coordinates.
+TEST(OffReader, VerticesMayHaveAllAtOnce) {
+    for (std::string const alpha : {"", " 1"}) {
+        Scene const scene =
+            Parse("STCNOFF\n3 1 0\n0 0 0 0 0 1 .5 0 0" + alpha + " .25 .5\n1 0 0 0 0 1 0 1 0" +
+                  alpha + " 1 0\n0 1 0 0 0 1 0 0 1" + alpha + " 0 1\n3 0 1 2\n");
+        EXPECT_EQ(scene.positions, (std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0}));
+        EXPECT_EQ(scene.uvs, (std::vector<double>{0.25, 0.5, 1, 0, 0, 1}));
+        EXPECT_EQ(scene.primvars.at(0).numChannels, alpha.empty() ? 3 : 4);
+        EXPECT_EQ(scene.primvars.at(0).values[0], 0.5f);
+    }
+}
+
 TEST(OffReader, CrlfAndMissingLastLineEndChangeNothing) {
     for (std::string const& text : {test::WithCrlf(kQuad), kQuad.substr(0, kQuad.size() - 1)}) {
         EXPECT_EQ(Parse(text).positions, Parse(kQuad).positions);
@@ -106,7 +139,14 @@ INSTANTIATE_TEST_SUITE_P(
     Of, OffRefusal,
     testing::Values(
         Refusal{"Empty", "", "mesh.off:", {"ends before the keyword OFF"}},
-        Refusal{"WrongKeyword", "NOFF\n", "mesh.off:1: ", {"'NOFF'", "OFF or COFF is needed"}},
+        Refusal{"WrongKeyword", "NOF\n", "mesh.off:1: ", {"'NOF'", "is needed"}},
+        Refusal{"Homogeneous", "4OFF\n3 1 0\n", "mesh.off:1: ", {"4OFF", "homogeneous"}},
+        Refusal{"HomogeneousColoured", "C4OFF\n3 1 0\n", "mesh.off:1: ", {"4OFF"}},
+        Refusal{"AnyDimension", "nOFF\n3\n3 1 0\n", "mesh.off:1: ", {"nOFF", "dimension"}},
+        Refusal{"NormalThatIsMissing",
+                "NOFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+                "mesh.off:3: ",
+                {"a normal is missing"}},
         Refusal{"Binary", "OFF BINARY\n", "mesh.off:1: ", {"'BINARY'"}},
         Refusal{"NoCounts", "OFF\n", "mesh.off:1: ", {"ends before the counts"}},
         Refusal{"OneCount", "OFF\n3\n", "mesh.off:2: ", {"number of faces is missing"}},
@@ -163,9 +203,13 @@ TEST(OffReader, HugeCountsAreRefusedWithoutRoomForThem) {
 }
 
 TEST(OffReader, DamagedFilesAreReadWholeOrRefusedAtALine) {
-    auto const counts = test::ReadDamaged(kQuad, 2000, "mesh.off", Parse);
-    EXPECT_GT(counts.numRead, 100);
-    EXPECT_GT(counts.numRefused, 100);
+    for (std::string const& whole :
+         {kQuad, std::string("STCNOFF3 1 0\n0 0 0 0 0 1 1 0 0 0 0\n1 0 0 0 0 1 0 1 0 1 0\n"
+                             "0 1 0 0 0 1 0 0 1 0 1\n3 0 1 2\n")}) {
+        auto const counts = test::ReadDamaged(whole, 2000, "mesh.off", Parse);
+        EXPECT_GT(counts.numRead, 100);
+        EXPECT_GT(counts.numRefused, 100);
+    }
 }
 
 TEST(OffReader, GarbageIsRefused) {

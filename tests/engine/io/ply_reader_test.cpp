@@ -2,9 +2,11 @@
 #include "engine/io/ply_reader.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <regex>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -115,6 +117,75 @@ TEST(PlyReader, CrlfAndMissingLastLineEndChangeNothing) {
     }
 }
 
+TEST(PlyReader, AnyLineEndChangesNothing) {
+    for (std::string const end : {"\r", "\n\r"}) {
+        Scene const other = Parse(std::regex_replace(kTriangle, std::regex("\n"), end));
+        EXPECT_EQ(other.positions, Parse(kTriangle).positions);
+        EXPECT_EQ(other.faceLines, Parse(kTriangle).faceLines);
+    }
+}
+
+TEST(PlyReader, ElementsMayComeInAnyOrder) {
+    Scene const scene = Parse(
+        "ply\nformat ascii 1.0\nelement edge 1\nproperty int a\nelement face 1\nproperty list "
+        "uchar "
+        "int vertex_indices\nelement vertex 3\nproperty float z\nproperty float x\nproperty float "
+        "y\nend_header\n5\n3 2 1 0\n9 0 0\n9 1 0\n9 0 1\n");
+    EXPECT_EQ(scene.positions, (std::vector<double>{0, 0, 9, 1, 0, 9, 0, 1, 9}));
+    EXPECT_EQ(scene.cage.faceVertices, (std::vector<Index>{2, 1, 0}));
+}
+
+/// Two squares side by side as strips: of 4 and 4 vertices, parted by -1.
+std::string MakeStrips(std::string const& strips) {
+    return "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty "
+           "float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+           "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n" +
+           strips + "\n";
+}
+
+TEST(PlyReader, TriangleStripsAreTurnedAlternately) {
+    EXPECT_EQ(Parse(MakeStrips("6 0 1 2 3 4 5")).cage.faceVertices,
+              (std::vector<Index>{0, 1, 2, 2, 1, 3, 2, 3, 4, 4, 3, 5}));
+}
+
+TEST(PlyReader, ANegativeIndexBeginsAStripAnew) {
+    Scene const scene = Parse(MakeStrips("9 0 1 2 3 -1 2 3 4 5"));
+    EXPECT_EQ(scene.cage.faceVertices, (std::vector<Index>{0, 1, 2, 2, 1, 3, 2, 3, 4, 4, 3, 5}));
+    EXPECT_EQ(scene.faceLines, (std::vector<uint32_t>{16, 16, 16, 16}));
+    EXPECT_EQ(Parse(MakeStrips("7 -1 0 -1 0 1 2 -1")).cage.faceVertices,
+              (std::vector<Index>{0, 1, 2}));
+}
+
+TEST(PlyReader, TrianglesThatRepeatAVertexOnlyLeadOn) {
+    // (0 1 2), four that lead on, and 4 3 5 as the sixth, which is turned.
+    EXPECT_EQ(Parse(MakeStrips("8 0 1 2 2 4 4 3 5")).cage.faceVertices,
+              (std::vector<Index>{0, 1, 2, 3, 4, 5}));
+}
+
+TEST(PlyReader, AStripsVertexThatIsNotIsRefused) {
+    EXPECT_EQ(RefusalOfBytes(MakeStrips("3 0 1 6")),
+              "mesh.ply:16: a face uses vertex 6; 0 to 5 are possible");
+}
+
+/// Three triangles with texture numbers.
+std::string MakeTextured(std::string const& comments) {
+    return "ply\nformat ascii 1.0\n" + comments +
+           "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face "
+           "3\nproperty list uchar int vertex_indices\nproperty int texnumber\nend_header\n0 0 "
+           "0\n1 "
+           "0 0\n0 1 0\n3 0 1 2 1\n3 0 2 1 -1\n3 1 2 0 0\n";
+}
+
+TEST(PlyReader, TextureNumbersAreMaterials) {
+    auto const& materials =
+        Parse(MakeTextured("comment TextureFile skin.png\ncomment TextureFile the eyes.png\n"))
+            .groups[static_cast<size_t>(engine::GroupKind::Material)];
+    EXPECT_EQ(materials.names, (std::vector<std::string>{"the eyes.png", "skin.png"}));
+    EXPECT_EQ(materials.faceGroup, (std::vector<Index>{0, -1, 1}));
+    EXPECT_EQ(Parse(MakeTextured("")).groups[0].names,
+              (std::vector<std::string>{"texture1", "texture0"}));
+}
+
 class PlyByteOrder : public testing::TestWithParam<bool> {};
 
 TEST_P(PlyByteOrder, EveryTypeIsRead) {
@@ -145,6 +216,25 @@ TEST_P(PlyByteOrder, TexcoordListGivesEveryCornerItsUV) {
     for (size_t corner = 0; corner < 3; ++corner) {
         EXPECT_EQ(scene.uvs[2 * indices[corner]], expected[corner][0]) << corner;
         EXPECT_EQ(scene.uvs[2 * indices[corner] + 1], expected[corner][1]) << corner;
+    }
+}
+
+// Data that begins with a byte that could belong to the header's line end is not eaten.
+TEST_P(PlyByteOrder, HeadersEndAsTheirFirstLinesDo) {
+    std::string const header = kTriangle.substr(0, kTriangle.find("end_header\n") + 11);
+    for (std::string const end : {"\n", "\r\n", "\r", "\n\r"}) {
+        for (char const first : {'\r', '\n'}) {
+            Bytes body(GetParam());
+            float const x = std::bit_cast<float>(0x01010101u * static_cast<unsigned char>(first));
+            for (float value : {x, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f}) body.Add(value);
+            body.Add(static_cast<uint8_t>(3)).Add(0).Add(1).Add(2);
+            std::string text = header;
+            text.replace(text.find("ascii"), 5, FormatName(GetParam()));
+            Scene const scene =
+                Parse(std::regex_replace(text, std::regex("\n"), end) + body.GetText());
+            EXPECT_EQ(scene.positions[0], x);
+            EXPECT_EQ(scene.cage.faceVertices, (std::vector<Index>{0, 1, 2}));
+        }
     }
 }
 
@@ -330,8 +420,34 @@ INSTANTIATE_TEST_SUITE_P(
                 With("element vertex 3\n", ""),
                 "mesh.ply:3: ",
                 {"before the first element"}},
-        Refusal{"NoZ", With("property float z\n", ""), "mesh.ply:", {"lacks x, y or z"}},
-        Refusal{"NoIndices", With("vertex_indices", "indices"), "mesh.ply:", {"vertex_indices"}},
+        Refusal{"NoZ", With("property float z\n", ""), "mesh.ply:", {"lacks 'z'", "'x', 'y'"}},
+        Refusal{"NoIndices",
+                With("vertex_indices", "indices"),
+                "mesh.ply:9: ",
+                {"vertex_indices", "'indices'"}},
+        Refusal{"PointsOnly",
+                With("element face 1\nproperty list uchar int vertex_indices\n", ""),
+                "mesh.ply:7: ",
+                {"no element 'face'", "limn needs polygons"}},
+        Refusal{"NoVertices",
+                With("element vertex 3", "element point 3"),
+                "mesh.ply:9: ",
+                {"no element 'vertex'"}},
+        Refusal{"EmptyVertices", With("vertex 3", "vertex 0"), "mesh.ply:9: ", {"'vertex'"}},
+        Refusal{"ElementTwice",
+                With("element face 1", "element vertex 1"),
+                "mesh.ply:7: ",
+                {"'vertex' comes twice"}},
+        Refusal{"PropertyTwice",
+                With("float y", "float x"),
+                "mesh.ply:5: ",
+                {"'x' of element 'vertex' comes twice"}},
+        Refusal{"TextureNumberWithAFraction",
+                With("vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2",
+                     "vertex_indices\nproperty float texnumber\nend_header\n0 0 0\n1 0 0\n0 1 "
+                     "0\n3 0 1 2 0.5"),
+                "mesh.ply:14: ",
+                {"texnumber is 0.5"}},
         Refusal{"CountThatIsAWord", With("vertex 3", "vertex many"), "mesh.ply:3: ", {"'many'"}},
         Refusal{
             "NegativeCount", With("vertex 3", "vertex -3"), "mesh.ply:3: ", {"count -3", "0 to"}},
@@ -417,11 +533,23 @@ TEST(PlyReader, HugeListInABinaryFileIsRefusedWithoutRoomForIt) {
     EXPECT_LT(test::PeakMemory() - before, test::kModestMemory);
 }
 
+TEST(PlyReader, ManyElementsAndPropertiesAreRefusedByNumber) {
+    std::string elements = "ply\nformat ascii 1.0\n",
+                properties = "ply\nformat ascii 1.0\nelement vertex 1\n";
+    for (int i = 0; i < 100000; ++i) {
+        elements += fmt::format("element e{} 0\n", i);
+        properties += fmt::format("property float p{}\n", i);
+    }
+    EXPECT_NE(RefusalOfBytes(elements).find("more than 4096 elements"), std::string::npos);
+    EXPECT_NE(RefusalOfBytes(properties).find("more than 4096 properties"), std::string::npos);
+}
+
 // -------- hostile bytes
 
 TEST(PlyReader, DamagedFilesAreReadWholeOrRefusedAtALineOrElement) {
-    for (std::string const& whole : {kTriangle, MakeTyped(false), MakeTyped(true),
-                                     MakePair("6 0 0 1 0 1 1", "6 0 0 1 1 0 1")}) {
+    for (std::string const& whole :
+         {kTriangle, MakeTyped(false), MakeTyped(true), MakePair("6 0 0 1 0 1 1", "6 0 0 1 1 0 1"),
+          MakeStrips("9 0 1 2 3 -1 2 3 4 5"), MakeTextured("comment TextureFile a.png\n")}) {
         auto const counts = test::ReadDamaged(whole, 2000, "mesh.ply", Parse);
         EXPECT_GT(counts.numRead, 20) << whole;
         EXPECT_GT(counts.numRefused, 100) << whole;

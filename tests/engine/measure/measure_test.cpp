@@ -39,6 +39,32 @@ TEST(Measure, ACubeHasItsAreaAndVolume) {
     EXPECT_FALSE(limit.gaussBonnet[0].wasAudited);
 }
 
+// A face that is wound against the others: what it adds to the volume has the wrong sign.
+TEST(Measure, WhereWindingsDisagreeThereIsNoVolume) {
+    auto scene = test::MakeCube();
+    std::swap(scene.cage.faceVertices[1], scene.cage.faceVertices[3]);
+    for (MeasuredSurface surface : {MeasuredSurface::Limit, MeasuredSurface::Mesh})
+        EXPECT_FALSE(MeasureScene(scene, surface).volume);
+}
+
+TEST(Measure, ABodySeenInsideOutIsSaidWithTheCure) {
+    auto scene = test::MakeCube();
+    scene.path = "cube.obj";
+    auto const measure = [&](Orientation orientation) {
+        engine::Job job;
+        engine::Measure(engine::Model::Build(scene), MeasuredSurface::Mesh, orientation, job);
+        return job.GetWarnings();
+    };
+    std::string const message =
+        "cube.obj: the volume is negative: the surface is seen inside out; `orientation` ";
+    EXPECT_TRUE(measure(Orientation::Right).empty());
+    EXPECT_EQ(measure(Orientation::Left), std::vector<std::string>{message + "right turns it"});
+    for (size_t face = 0; face < 6; ++face)
+        std::swap(scene.cage.faceVertices[4 * face + 1], scene.cage.faceVertices[4 * face + 3]);
+    EXPECT_TRUE(measure(Orientation::Left).empty());
+    EXPECT_EQ(measure(Orientation::Right), std::vector<std::string>{message + "left turns it"});
+}
+
 // A fine torus of radii 1 and 0.4: area 4 pi^2 R r, volume 2 pi^2 R r^2, mean of H 1 / 2r, of K 0.
 TEST(Measure, ATorusHasItsClosedForms) {
     auto scene = test::MakeTorus(64, 40);

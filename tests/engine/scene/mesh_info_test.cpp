@@ -355,6 +355,60 @@ TEST(MeshInfo, RepeatedCornerIsNamedWithItsLine) {
     EXPECT_EQ(FindDefect(info, "repeated_corner")->line, 24u);
 }
 
+TEST(MeshInfo, FacesThatStandTwiceAreNamedWithTheirTwins) {
+    Scene scene = test::MakeCube();
+    auto const& vertices = scene.cage.faceVertices;
+    // Face 2 turned on, and turned over; face 0 as it is.
+    std::vector<Index> const twins{vertices[9],  vertices[10], vertices[11], vertices[8],
+                                   vertices[11], vertices[10], vertices[9],  vertices[8],
+                                   vertices[0],  vertices[1],  vertices[2],  vertices[3]};
+    scene.cage.faceVertices.insert(scene.cage.faceVertices.end(), twins.begin(), twins.end());
+    scene.cage.faceSizes.resize(9, 4);
+    MeshInfo const info = Describe(scene);
+    ASSERT_EQ(CountDefects(info, "doubled_face"), 3u);
+    EXPECT_EQ(FindDefect(info, "doubled_face")->element, 6);
+    EXPECT_EQ(
+        FindDefect(info, "doubled_face")->message,
+        "3 faces have the vertices of another one, first face 6 those of face 2; leave one of "
+        "them out");
+}
+
+TEST(MeshInfo, FacesThatShareVerticesWithoutBeingTheSameAreNotDoubled) {
+    // Three of four vertices, and the same number of others.
+    MeshInfo const info = Describe(test::MakeScene({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 2, 2},
+                                                   {{0, 1, 2, 3}, {0, 1, 2, 4}, {0, 2, 3}}));
+    EXPECT_EQ(CountDefects(info, "doubled_face"), 0u);
+    for (char const* name : {"catmark_cube", "catmark_torus", "loop_icosahedron"})
+        EXPECT_EQ(CountDefects(Describe(test::LoadShape(name)), "doubled_face"), 0u) << name;
+}
+
+TEST(MeshInfo, BoundaryVerticesThatCoincideAreCountedWithTheCure) {
+    // Three quads: two touch along an edge, a third in one of its points.
+    Scene scene = test::MakeScene({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 1, 0, 0, 2, 0,
+                                   0, 2, 1, 0, 1, 1, 0, 1, 1, 0, 2, 2, 0, 1, 2, 0},
+                                  {{0, 1, 2, 3}, {4, 5, 6, 7}, {8, 9, 10}});
+    scene.faceLines = {7, 8, 9};
+    MeshInfo const info = Describe(scene);
+    ASSERT_EQ(CountDefects(info, "coincident_vertices"), 5u);
+    auto const* const defect = FindDefect(info, "coincident_vertices");
+    EXPECT_EQ(defect->element, 1);
+    EXPECT_EQ(defect->line, 7u);
+    EXPECT_EQ(
+        defect->message,
+        "5 boundary vertices coincide with others, first vertex 1 with 4: sheets that only touch "
+        "come apart as they are subdivided; `weld` 0 joins them");
+}
+
+TEST(MeshInfo, VerticesThatCoincideWithinSurfacesAreNoDefect) {
+    // A closed cube beside one vertex of which a triangle begins; a vertex that no face uses.
+    Scene scene = test::MakeCube();
+    scene.positions.insert(scene.positions.end(), {-1, -1, -1, -2, -1, -1, -1, -2, -1, -2, -1, -1});
+    scene.cage.faceVertices.insert(scene.cage.faceVertices.end(), {8, 9, 10});
+    scene.cage.faceSizes.push_back(3);
+    scene.cage.numVertices = 12;
+    EXPECT_EQ(CountDefects(Describe(scene), "coincident_vertices"), 0u);
+}
+
 TEST(MeshInfo, CreaseWithoutAnEdgeIsNamed) {
     Scene scene = test::MakeCube();
     scene.cage.creaseVertexPairs = {0, 1, 0, 6};  // 0 6 is a diagonal
