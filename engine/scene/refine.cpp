@@ -50,8 +50,7 @@ Primvar RefinePrimvar(Far::TopologyRefiner const& refiner, Primvar const& primva
 /// Refined vertices at their limit. Vertices without a face that has one stay.
 std::vector<double> MoveToLimit(Scene const& fine, Job& job) {
     auto const refiner = far_ext::CreateRefiner(fine.cage);
-    NamingMesh(fine.path, [&] { eval::LimitSurface::CheckSize(*refiner); });
-    eval::LimitSurface const surface(*refiner);
+    auto const surface = NamingMesh(fine.path, [&] { return eval::LimitSurface(*refiner); });
     return eval::EvaluateVertexLimits(surface, fine.positions, 3, eval::FaceTree::kLimitDepth,
                                       [&] { job.CheckStopped(); })
         .values;

@@ -53,26 +53,30 @@ LimitSurface::LimitSurface(Far::TopologyRefiner const& refiner, int fvarChannel)
                     fmt::format("face-varying channel {} does not exist; the mesh has {}", _channel,
                                 refiner.GetNumFVarChannels()));
     }
-    CheckSize(refiner);
+    if (auto const excess = FindExcess(refiner)) {
+        throw Error(ErrorCode::TooLarge,
+                    excess->Describe(
+                        fmt::format("{} {}", excess->isFace ? "face" : "vertex", excess->element)));
+    }
     Classify();
 }
 
-void LimitSurface::CheckSize(Far::TopologyRefiner const& refiner) {
+std::optional<LimitSurface::Excess> LimitSurface::FindExcess(Far::TopologyRefiner const& refiner) {
     Level const level = refiner.GetLevel(0);
-    auto const refuse = [](char const* what, Index element, int count, char const* parts,
-                           int most) {
-        throw Error(ErrorCode::TooLarge,
-                    fmt::format("{} {} has {} {}; a limit surface takes up to {}", what, element,
-                                count, parts, most));
-    };
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
         int const valence = level.GetVertexFaces(vertex).size();
-        if (valence > kMaxValence) refuse("vertex", vertex, valence, "faces", kMaxValence);
+        if (valence > kMaxValence) return Excess{false, vertex, valence};
     }
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         int const size = level.GetFaceVertices(face).size();
-        if (size > kMaxCorners) refuse("face", face, size, "corners", kMaxCorners);
+        if (size > kMaxCorners) return Excess{true, face, size};
     }
+    return std::nullopt;
+}
+
+std::string LimitSurface::Excess::Describe(std::string const& name) const {
+    return fmt::format("{} has {} {}; a limit surface takes up to {}", name, count,
+                       isFace ? "corners" : "faces", isFace ? kMaxCorners : kMaxValence);
 }
 
 void LimitSurface::CheckValues(std::span<double const> values, int length) const {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <opensubdiv/far/topologyRefiner.h>
@@ -23,15 +25,24 @@ class LimitSurface {
 public:
     /// \param refiner      unrefined base topology, kept by reference: it must outlive the surface
     /// \param fvarChannel  face-varying channel, or -1 for vertices
-    /// \throws Error       BadOption: a channel that there is not; as CheckSize
+    /// \throws Error       BadOption: a channel that there is not. TooLarge: what FindExcess finds
     explicit LimitSurface(Far::TopologyRefiner const& refiner, int fvarChannel = -1);
 
     /// A ring's matrices take time and memory that grow with the third power of its size: 2 s and
     /// 0.2 GB at 512 faces, 2 s and 1.4 GB at 256 corners, eight times as much at twice as many.
     static constexpr int kMaxValence = 512, kMaxCorners = 256;
 
-    /// \throws Error  TooLarge: more faces at a vertex, or corners of a face
-    static void CheckSize(Far::TopologyRefiner const& refiner);
+    /// A vertex with more faces, or a face with more corners than that.
+    struct Excess {
+        bool isFace;
+        Index element;
+        int count;
+
+        /// "face 3 has 300 corners; ...", where NAME is "face 3"
+        std::string Describe(std::string const& name) const;
+    };
+    /// The first, if there is one.
+    static std::optional<Excess> FindExcess(Far::TopologyRefiner const& refiner);
 
     /// False for holes and, with boundary rule none, for faces at a boundary.
     bool HasLimit(Index face) const { return _kinds[face] != FaceKind::None; }

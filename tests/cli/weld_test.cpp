@@ -2,7 +2,7 @@
 //
 // Sheets that only touch: named by every verb that subdivides, joined by --weld.
 
-#include <filesystem>
+#include <algorithm>
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,8 @@ protected:
                 {"sharpen", mesh, "-o", folder / "e.obj"},
                 {"morph", mesh, mesh, "-o", folder / "f", "--steps", "1"},
                 {"smooth", mesh, "-o", folder / "g.obj", "--levels", "1"},
-                {"field", mesh, "-o", folder / "h.obj", "--levels", "1", "--source", "0"}};
+                {"field", mesh, "-o", folder / "h.obj", "--levels", "1", "--source", "0", "--sink",
+                 "6"}};
     }
 };
 
@@ -77,16 +78,12 @@ TEST_F(CutCube, IsWholeWithWeldInEveryVerb) {
         SCOPED_TRACE(run[0]);
         Outcome const outcome = Limn(run + Words{"--weld", "0", "--report", folder / "r.json"});
         EXPECT_FALSE(Contains(outcome.err, "coincide")) << outcome.err;
-        if (run[0] == "measure" || run[0] == "eval") {  // their stdout is data, the report a file
-            EXPECT_EQ(outcome.status, 0) << outcome.err;
-        }
-        ASSERT_TRUE(std::filesystem::exists(folder / "r.json"));
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
         json const report = Report();
         for (json const& input : report["inputs"]) {
             EXPECT_EQ(input["vertices"], 8);
             EXPECT_EQ(input["weld"], json({{"tolerance", 0.0}, {"joined", 16}, {"left_apart", 0}}));
         }
-        std::filesystem::remove(folder / "r.json");
     }
 }
 
@@ -104,11 +101,14 @@ TEST_F(CutCube, WeldedIsAClosedBodyForInfo) {
                          "within 0: 16 vertices joined to others, 0 left apart"));
 }
 
-// A cube of side 2 has mean curvature between 0.986 and 1.644 on its limit; six sheets have none.
+// The limit of a cube of side 2 has mean curvatures of 0.986 to 1.644 at the texels of this size;
+// six sheets have none.
 TEST_F(CutCube, HasItsCurvatureOnlyWhenWelded) {
     std::string const mesh = MakeCutCube();
     auto const range = [&](Words const& more) {
-        EXPECT_EQ(Bake(mesh, "a.exr", Words{"--report", folder / "r.json"} + more).status, 0);
+        EXPECT_EQ(Bake(mesh, "a.exr", Words{"--size", "256", "--report", folder / "r.json"} + more)
+                      .status,
+                  0);
         json const output = Report()["outputs"][0];
         return std::pair(output["min"].get<double>(), output["max"].get<double>());
     };
@@ -117,7 +117,7 @@ TEST_F(CutCube, HasItsCurvatureOnlyWhenWelded) {
     EXPECT_EQ(high, 0.0);
     auto const [weldedLow, weldedHigh] = range({"--weld", "0"});
     EXPECT_NEAR(weldedLow, 0.986, 0.001);
-    EXPECT_NEAR(weldedHigh, 1.64, 0.01);
+    EXPECT_NEAR(weldedHigh, 1.644, 0.01);  // depends on how near a corner a texel lies
 }
 
 TEST_F(CutCube, AWeldedBakeIsNotTakenForOneThatIsNot) {
@@ -142,9 +142,9 @@ TEST_F(CutCube, FramesAreWeldedWithTheirMesh) {
         Limn(words + Words{"--frames", folder / "f.{frame}.ply", "-o", folder / "{frame}.csv"})
             .status,
         0);
-    // A corner of the cube moves to 5/9 of it.
+    // A vertex of valence 3 moves to 5/9 of itself in one step, and to half of itself in the limit.
     std::string const row = Lines(test::ReadText(folder / "1.csv")).at(1);
-    EXPECT_TRUE(row.starts_with("0,0,0,-0.555555556,-0.555555556,-0.555555556")) << row;
+    EXPECT_TRUE(row.starts_with("0,0,0,-0.5,-0.5,-0.5,")) << row;
 }
 
 TEST_F(CutCube, ABadToleranceIsAUsageError) {

@@ -211,7 +211,7 @@ TEST(EditReader, WhatItCannotUseIsNamed) {
         "");
     EXPECT_EQ(refuse("{}"), "");
     EXPECT_NE(refuse("{\"curvature\": ").find("no JSON"), std::string::npos);
-    EXPECT_NE(refuse(R"({"curve": []})").find("key \"curve\" is not known"), std::string::npos);
+    EXPECT_NE(refuse(R"({"curve": []})").find("key 'curve' is not known"), std::string::npos);
     EXPECT_NE(refuse(R"({"filter": "smooth"})").find("'polarise' is possible"), std::string::npos);
     EXPECT_NE(refuse(R"({"curvature": [{"vertex": -1, "factor": 1}]})").find("no 0-based index"),
               std::string::npos);

@@ -177,7 +177,7 @@ std::string MakeTextured(std::string const& comments) {
 }
 
 TEST(PlyReader, TextureNumbersAreMaterials) {
-    auto const& materials =
+    auto const materials =
         Parse(MakeTextured("comment TextureFile skin.png\ncomment TextureFile the eyes.png\n"))
             .groups[static_cast<size_t>(engine::GroupKind::Material)];
     EXPECT_EQ(materials.names, (std::vector<std::string>{"the eyes.png", "skin.png"}));
