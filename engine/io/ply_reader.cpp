@@ -334,7 +334,7 @@ private:
         if (a == b || b == c || c == a) return;
         _scene.cage.faceVertices.insert(_scene.cage.faceVertices.end(), {a, b, c});
         AddFace(3);
-        ++_numFacesWithoutUVs;
+        _lacksUVs.push_back(1);
     }
 
     // -------- the whole

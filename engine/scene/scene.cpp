@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/scene/scene.h"
 
+#include <algorithm>
 #include <array>
 #include <iterator>
 #include <sstream>
@@ -57,10 +58,6 @@ void ForEachName(Scene const& scene, Visit visit) {
         ForEachName(scene, kind, visit);
 }
 
-void AddOnce(std::vector<std::string>& names, std::string const& name) {
-    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
-}
-
 }  // namespace
 
 std::vector<std::string> ListGroups(Scene const& scene) {
@@ -73,10 +70,15 @@ std::vector<std::string> ListGroups(Scene const& scene) {
 }
 
 std::vector<std::string> ListGroups(Scene const& scene, GroupKind kind) {
+    FaceGroups const& groups = scene.groups[static_cast<size_t>(kind)];
+    std::vector<char> isUsed(groups.names.size(), 0);
+    for (Index entry : groups.faceGroup) {
+        if (entry >= 0) isUsed[entry] = 1;
+    }
     std::vector<std::string> used;
-    ForEachName(scene, kind, [&](FaceGroups const& groups, Index entry, std::string const& name) {
-        if (std::ranges::find(groups.faceGroup, entry) != groups.faceGroup.end())
-            AddOnce(used, name);
+    std::unordered_set<std::string> known;
+    ForEachName(scene, kind, [&](FaceGroups const&, Index entry, std::string const& name) {
+        if (isUsed[entry] && known.insert(name).second) used.push_back(name);
     });
     return used;
 }

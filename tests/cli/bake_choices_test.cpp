@@ -102,14 +102,27 @@ TEST_F(Choices, FacesWithoutTextureCoordinatesAreNamedAndTheOthersBaked) {
 
 // -------- tiles
 
+/// A quad whose texture coordinates reach from 0 to (u, v).
+std::string MakeWideQuad(std::string const& u, std::string const& v) {
+    return "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt " + u + " 0\nvt " + u + " " + v +
+           "\nvt 0 " + v + "\nf 1/1 2/2 3/3 4/4\n";
+}
+
 TEST_F(Choices, TextureCoordinatesBeyondAllBoundsAreRefusedAtOnce) {
-    std::string const mesh = folder.Write(
-        "far.obj",
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1e30 0\nvt 1e30 1e30\nvt 0 1e30\n"
-        "f 1/1 2/2 3/3 4/4\n");
+    std::string const mesh = folder.Write("far.obj", MakeWideQuad("1e30", "1e30"));
+    ExpectError(BakeAloud(mesh, "a.<UDIM>.exr"), 3, "face 0 (line 9)");
+    EXPECT_EQ(Limn({"info", mesh}).status, 0);
+}
+
+TEST_F(Choices, MoreThanAHundredTilesAreBakedIfTheyAreNamed) {
+    std::string const mesh = folder.Write("wide.obj", MakeWideQuad("10", "10.5"));
     std::string const error = ExpectError(BakeAloud(mesh, "a.<UDIM>.exr"), 2, "--tiles");
     EXPECT_TRUE(Contains(error, "more than 100 tiles")) << error;
     EXPECT_TRUE(Contains(error, "face 0 (line 9)")) << error;
+    json const info = json::parse(Limn({"info", mesh, "--json"}).out);
+    EXPECT_EQ(info["uv"]["tiles"].size(), 110u);
+    ASSERT_EQ(BakeAloud(mesh, "a.<UDIM>.exr", {"--tiles", "1001-1003,1101"}).status, 0);
+    EXPECT_EQ(Report()["tiles"], json({1001, 1002, 1003, 1101}));
 }
 
 TEST_F(Choices, OneTileIsBakedByItsNameWithoutAToken) {

@@ -16,7 +16,8 @@ namespace limn::engine {
 struct TexturedFaces {
     /// \param model   kept by reference
     /// \param groups  whose faces to take; empty for all
-    /// \throws Error  BadMesh: no texture coordinates, or such that no texel can be told from another
+    /// \throws Error  BadMesh: no texture coordinates, or such that no texel can be told from
+    /// another
     ///                there. BadOption: a group that there is not
     TexturedFaces(Model const& model, std::vector<std::string> const& groups, Job const& job);
 

@@ -100,8 +100,8 @@ TEST(Audit, AMissedIntegralIsToldWithItsWorstFaceAndTheCure) {
     ASSERT_GE(audit.worstFace, 0);
     EXPECT_GT(audit.worstFaceError, 0.0);
     std::string const& miss = report.misses[0];
-    for (char const* part :
-         {"component 0", "12.5664 is expected", "the bound is 1e-12", "`width` or `samplesPerSide`"})
+    for (char const* part : {"component 0", "12.5664 is expected", "the bound is 1e-12",
+                             "`width` or `samplesPerSide`"})
         EXPECT_TRUE(Contains(miss, part)) << miss;
     EXPECT_TRUE(Contains(miss, "face " + std::to_string(audit.worstFace))) << miss;
     EXPECT_TRUE(AuditOf(test::LoadSpot(), {}, 512).report.misses.empty());
