@@ -38,8 +38,8 @@ void BakeFile(std::string const& mesh, std::string const& output, bool hasMips) 
 void PackFile(std::array<std::vector<float>, 3> const& planes, std::string const& output) {
     engine::ExrSpec spec;
     spec.width = spec.height = kSize;
-    spec.isHalf = true;
     spec.channels.assign(HalfImage::kChannels.begin(), HalfImage::kChannels.end());
+    spec.isHalf.assign(spec.channels.size(), 1);
     engine::ExrWriter writer(output, spec);
     std::mutex mutex;
     constexpr int kTile = engine::ExrSpec::kTileSize, kNum = kSize / kTile;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -15,12 +16,21 @@ struct BakeOutput {
     std::string sha256;
     int tile = 1001, width = 0, height = 0;
     bool wasSkipped = false;
+    TangentialPart leftOut;        ///< of displacements along the normal
     float min = 0.0f, max = 0.0f;  ///< over covered texels, all channels
+};
+
+/// Texels over which several faces lie.
+struct OverlapReport {
+    std::array<Index, 2> faces{-1, -1};     ///< the lowest pair
+    double depth = 0.0;                     ///< how far, in texels, they reach round a sample
+    std::array<size_t, 3> betweenGroups{};  ///< by GroupKind: texels of faces of different groups
 };
 
 struct BakeReport {
     size_t texelsCovered = 0, overlaps = 0, newtonFailures = 0, movedSamples = 0,
            degenerateSamples = 0, clamped = 0;
+    OverlapReport overlap;  ///< what the overlaps are
     std::vector<int> tiles;
     std::vector<BakeOutput> outputs;
     std::vector<FileLayout> files;          ///< what outputs of each name hold

@@ -2,41 +2,26 @@
 #include "engine/bake/exr_sink.h"
 
 #include <cstring>
-#include <filesystem>
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include "engine/bake/mip_writer.h"
-#include "engine/bake/preview.h"
-#include "engine/images/png.h"
+#include "engine/bake/output_names.h"
+#include "engine/bake/preview_files.h"
 
 namespace limn::engine {
 
 namespace {
 
-/// Where the previews of a file's maps go.
-std::vector<std::string> NamePreviews(std::string const& path, FileLayout const& file) {
-    std::string const stem = path.ends_with(".exr") ? path.substr(0, path.size() - 4) : path;
-    std::vector<std::string> paths;
-    for (MapTraits const& map : file.maps) {
-        paths.push_back(stem + (file.maps.size() > 1 ? "." + map.name : "") + ".png");
-    }
-    return paths;
-}
-
-bool DoAllExist(std::vector<std::string> const& paths) {
-    return std::all_of(paths.begin(), paths.end(),
-                       [](std::string const& path) { return std::filesystem::exists(path); });
-}
-
 ExrSpec MakeSpec(BakeOptions const& options, FileLayout const& file, Attributes const& attributes) {
     ExrSpec spec;
     spec.width = options.width;
     spec.height = options.height;
-    spec.isHalf = options.isHalf;
     spec.hasMips = options.hasMips;
     spec.compression = options.compression;
     spec.channels = file.channelNames;
+    spec.isHalf = file.FindHalfChannels(options);
     spec.attributes = attributes;
     return spec;
 }
@@ -48,26 +33,22 @@ struct PackedTiles : PackedRows {
 
 class ExrSink : public TexelSink {
 public:
-    ExrSink(std::string const& path, FileLayout const& file, BakeOptions const& options,
-            ExrSpec const& spec)
-        : _options(options), _numPlanes(file.numPlanes), _writer(path, spec) {
+    ExrSink(Model const& model, std::string const& path, FileLayout const& file,
+            BakeOptions const& options, ExrSpec const& spec, PreviewFiles previews, Job const& job)
+        : _model(model),
+          _options(options),
+          _job(job),
+          _numPlanes(file.numPlanes),
+          _writer(path, spec),
+          _previews(std::move(previews)) {
         if (options.hasMips) {
             _mips = std::make_unique<MipWriter>(_writer, spec, file.groups, file.numPlanes,
                                                 options.hasCoverage);
         }
-        if (!options.hasPreview) return;
-        _previewPaths = NamePreviews(path, file);
-        float const zero = options.encoding ? static_cast<float>(options.encoding->offset) : 0.0f;
-        int firstChannel = 0;
-        for (MapTraits const& map : file.maps) {
-            _previews.emplace_back(map.range, map.GetNumChannels(), firstChannel, spec.width,
-                                   spec.height, zero);
-            firstChannel += map.GetNumChannels();
-        }
     }
 
     bool WantsCoverage() const override {
-        return _options.hasCoverage || _mips || !_previews.empty();
+        return _options.hasCoverage || _mips || _previews.IsAnyWanted();
     }
 
     std::unique_ptr<PackedRows> Pack(StripView const& strip) override {
@@ -84,7 +65,7 @@ public:
             _numClamped += tile.numClamped;
             _writer.Write(tile);
         }
-        if (!_mips && _previews.empty()) return;
+        if (!_mips && !_previews.IsAnyWanted()) return;
         std::vector<TexelRowView> views;
         for (int row = 0; row < strip.numRows; ++row) {
             size_t const texel = strip.GetTexel(row);
@@ -92,18 +73,13 @@ public:
                              strip.isFilled + texel});
         }
         if (_mips) _mips->Add(views);
-        for (PreviewBuilder& preview : _previews) {
-            for (int row = 0; row < strip.numRows; ++row) {
-                preview.Add(strip.firstRow + row, views[row]);
-            }
-        }
+        _previews.Add(strip.firstRow, views);
     }
 
     size_t Commit(BakeOutput& output) override {
+        _previews.RemoveStale(_model);
         _writer.Commit();
-        for (size_t map = 0; map < _previews.size(); ++map) {
-            WritePng(_previewPaths[map], _previews[map].Draw());
-        }
+        _previews.Write(fmt::format("{} {}", DescribeMesh(), output.tile), _job);
         if (_options.wantsChecksums) output.sha256 = Sha256OfFile(output.path);
         return _numClamped + (_mips ? _mips->GetNumClamped() : 0);
     }
@@ -129,29 +105,39 @@ private:
                             static_cast<size_t>(strip.width));
     }
 
+    std::string DescribeMesh() const {
+        return _options.group.empty() ? _model.GetName()
+                                      : fmt::format("{} {}", _model.GetName(), _options.group);
+    }
+
+    Model const& _model;
     BakeOptions const& _options;
+    Job const& _job;
     int _numPlanes;
     ExrWriter _writer;
     std::unique_ptr<MipWriter> _mips;
-    std::vector<PreviewBuilder> _previews;
-    std::vector<std::string> _previewPaths;
+    PreviewFiles _previews;
     size_t _numClamped = 0;
 };
 
 }  // namespace
 
 std::unique_ptr<TexelSink> ExrDestination::Open(FileLayout const& file, BakeOutput& output) {
-    output.path = ExpandPattern(_options.pattern, output.map, _model.GetName(), output.tile);
+    output.path = ExpandPattern(_options.pattern, {.map = output.map,
+                                                   .mesh = _model.GetName(),
+                                                   .group = _options.group,
+                                                   .tile = output.tile});
     Attributes const attributes = MakeAttributes(_options, file, _model);
-    bool const hasPreviews = !_options.hasPreview || DoAllExist(NamePreviews(output.path, file));
+    PreviewFiles previews(output.path, file, _options, attributes);
     output.wasSkipped =
-        _options.skipsExisting && IsUpToDate(output.path, attributes) && hasPreviews;
+        _options.skipsExisting && IsUpToDate(output.path, attributes) && previews.AreUpToDate();
     if (output.wasSkipped) {
         if (_options.wantsChecksums) output.sha256 = Sha256OfFile(output.path);
         return nullptr;
     }
-    return std::make_unique<ExrSink>(output.path, file, _options,
-                                     MakeSpec(_options, file, attributes));
+    return std::make_unique<ExrSink>(_model, output.path, file, _options,
+                                     MakeSpec(_options, file, attributes), std::move(previews),
+                                     _job);
 }
 
 }  // namespace limn::engine

@@ -3,6 +3,7 @@
 
 #include "engine/bake/bake_options.h"
 #include "engine/bake/texel_sink.h"
+#include "engine/scene/job.h"
 
 namespace limn::engine {
 
@@ -10,9 +11,9 @@ namespace limn::engine {
 /// previews where these are asked for. Files appear one by one, each complete or not at all.
 class ExrDestination : public BakeDestination {
 public:
-    /// Both are kept by reference.
-    ExrDestination(Model const& model, BakeOptions const& options)
-        : _model(model), _options(options) {}
+    /// All are kept by reference.
+    ExrDestination(Model const& model, BakeOptions const& options, Job const& job)
+        : _model(model), _options(options), _job(job) {}
 
     /// \throws Error  Io
     std::unique_ptr<TexelSink> Open(FileLayout const& file, BakeOutput& output) override;
@@ -20,6 +21,7 @@ public:
 private:
     Model const& _model;
     BakeOptions const& _options;
+    Job const& _job;
 };
 
 }  // namespace limn::engine

@@ -7,37 +7,20 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "engine/bake/output_names.h"
 #include "engine/images/exr_names.h"
 #include "engine/scene/subdivision_names.h"
-#include "engine/scene/udim.h"
 #include "engine/version.h"
 
 namespace limn::engine {
 
-namespace {
-
-/// A map's name where it becomes part of a path or of a channel's name.
-std::string AsFileName(std::string name) {
-    std::replace_if(name.begin(), name.end(), [](char c) { return c == ':' || c == '/'; }, '_');
-    return name;
-}
-
-}  // namespace
-
-std::string ExpandPattern(std::string const& pattern, std::string const& map,
-                          std::string const& mesh, int tile) {
-    std::string const named = ReplaceAll(pattern, "{map}", AsFileName(map));
-    return ReplaceUdimToken(ReplaceAll(named, "{mesh}", mesh), tile);
-}
-
 std::vector<FileLayout> LayOutFiles(std::vector<std::unique_ptr<Map>> const& maps,
                                     std::string const& pattern, bool hasCoverage) {
-    bool const hasMapToken = pattern.find("{map}") != std::string::npos;
     std::vector<FileLayout> files;
     int numPlanes = 0;
     for (auto const& map : maps) {
         MapTraits const& traits = map->GetTraits();
-        if (files.empty() || hasMapToken) {
+        if (files.empty() || HasMapToken(pattern)) {
             files.emplace_back();
             files.back().firstPlane = numPlanes;
         }
@@ -63,10 +46,36 @@ std::vector<FileLayout> LayOutFiles(std::vector<std::unique_ptr<Map>> const& map
     return files;
 }
 
+std::vector<char> FileLayout::FindHalfChannels(BakeOptions const& options) const {
+    std::vector<char> isHalf;
+    bool areAll = true;
+    for (MapTraits const& map : maps) {
+        isHalf.insert(isHalf.end(), map.channels.size(), options.IsHalf(map.name));
+        areAll &= options.IsHalf(map.name);
+    }
+    isHalf.resize(channelNames.size(), areAll);
+    return isHalf;
+}
+
+namespace {
+
+/// "float", "half", or "half:MAP,MAP" where these are and the others are not.
+std::string DescribeTypes(BakeOptions const& options, FileLayout const& file) {
+    std::vector<std::string> halves;
+    for (MapTraits const& map : file.maps) {
+        if (options.IsHalf(map.name)) halves.push_back(map.name);
+    }
+    if (halves.empty()) return "float";
+    if (halves.size() == file.maps.size()) return "half";
+    return fmt::format("half:{}", fmt::join(halves, ","));
+}
+
+}  // namespace
+
 std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, Model const& model) {
     std::string text = fmt::format(
         "size={}x{} samples={} padding={} type={} compression={} mip={} coverage={}", options.width,
-        options.height, options.samplesPerSide, options.padding, options.isHalf ? "half" : "float",
+        options.height, options.samplesPerSide, options.padding, DescribeTypes(options, file),
         kExrCompressionWords.GetWord(options.compression), options.hasMips, options.hasCoverage);
     text += fmt::format(" {} orientation={}", DescribeSubdivision(model.GetCage()),
                         kOrientationWords.GetWord(options.orientation));

@@ -18,15 +18,14 @@ struct FileLayout {
     int firstPlane = 0, numPlanes = 0;
     std::vector<std::string> channelNames;  ///< EXR names; coverage last
     std::vector<ChannelGroup> groups;       ///< of the planes, from 0
+
+    /// Per channel, whether it is written with 16 bits; coverage is where all maps are.
+    std::vector<char> FindHalfChannels(BakeOptions const& options) const;
 };
 
 /// One file per map where the pattern has {map}, else one file with a layer per map.
 std::vector<FileLayout> LayOutFiles(std::vector<std::unique_ptr<Map>> const& maps,
                                     std::string const& pattern, bool hasCoverage);
-
-/// `pattern` with its tokens replaced. \param map  may be empty where the pattern has no {map}
-std::string ExpandPattern(std::string const& pattern, std::string const& map,
-                          std::string const& mesh, int tile);
 
 /// The options that decide pixels, in canonical form: what makes two runs' files equal.
 std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, Model const& model);

@@ -130,6 +130,15 @@ void MipChain::AverageTexel(std::span<float const> weights, std::span<float cons
                 out[static_cast<size_t>(group.first + c) * outStride] = line[c];
             continue;
         }
+        if (group.averaging == Averaging::Count) {
+            for (int c = group.first; c < group.first + group.count; ++c) {
+                float most = 0.0f;
+                for (size_t k = 0; k < weights.size(); ++k)
+                    most = std::max(most, values[k][static_cast<size_t>(c) * strides[k]]);
+                out[static_cast<size_t>(c) * outStride] = most;
+            }
+            continue;
+        }
         float lengthSquared = 0.0f, total = 0.0f;
         for (float weight : weights) total += weight;
         for (int c = group.first; c < group.first + group.count; ++c) {
@@ -163,6 +172,11 @@ void MipChain::ReduceQuarters(TexelRowView const& top, TexelRowView const& botto
             float const* const a = top.values + static_cast<size_t>(c) * top.stride;
             float const* const b = bottom.values + static_cast<size_t>(c) * bottom.stride;
             float* const out = &result.values[static_cast<size_t>(c) * width];
+            if (group.averaging == Averaging::Count) {
+                for (size_t x = 0; x < width; ++x)
+                    out[x] = std::max({a[2 * x], a[2 * x + 1], b[2 * x], b[2 * x + 1]});
+                continue;
+            }
             for (size_t x = 0; x < width; ++x)
                 out[x] = 0.25f * ((a[2 * x] + a[2 * x + 1]) + (b[2 * x] + b[2 * x + 1]));
             if (isUnit)

@@ -35,7 +35,8 @@ struct TexelRow {
 ///
 /// Each texel is the mean of what its box holds, weighted by area and coverage; where nothing is
 /// covered, of the padding. Sizes are ROUND_DOWN: a box is 2 wide, or 2 + 1/w' where the finer size
-/// is odd. Unit vectors are normalised again, lines averaged as d d^T.
+/// is odd. Unit vectors are normalised again, lines averaged as d d^T; of counts the
+/// largest is taken.
 class MipChain {
 public:
     /// \param emit  called for every finished row of a level >= 1, from fine to coarse

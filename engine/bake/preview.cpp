@@ -12,141 +12,179 @@ namespace limn::engine {
 
 namespace {
 
-constexpr int kLongestSide = 1024;
-constexpr int kLegendHeight = 28;
+constexpr int kLongestFlow = 1024;  // cells
+constexpr int kMargin = 8, kLineHeight = 20, kLeastWidth = 320;
 
-/// The value that a share of them does not pass, so that a few extremes do not hide the rest.
-float FindQuantile(std::vector<float> values, double share) {
-    if (values.empty()) return 0.0f;
-    auto const at =
-        values.begin() + static_cast<ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
+bool IsCount(MapTraits const& map) {
+    return map.GetGroups().front().averaging == Averaging::Count;
 }
 
 }  // namespace
 
-PreviewBuilder::PreviewBuilder(RangeKind range, int numChannels, int firstChannel, int width,
-                               int height, float zero)
-    : _range(range),
-      _numChannels(numChannels),
+Preview::Preview(MapTraits const& map, int firstChannel, int width, int height,
+                 std::optional<PreviewRange> const& range, Encoding const& encoding)
+    : _map(map),
       _firstChannel(firstChannel),
-      _factor(std::max(1, (std::max(width, height) + kLongestSide - 1) / kLongestSide)),
-      _width((width + _factor - 1) / _factor),
-      _height((height + _factor - 1) / _factor),
-      _sourceWidth(width),
-      _zero(zero),
-      _sums(static_cast<size_t>(_width) * _height * numChannels, 0.0f),
-      _weights(static_cast<size_t>(_width) * _height, 0.0f) {}
+      _width(width),
+      _height(height),
+      _range(range),
+      _encoding(encoding),
+      _edgesOfRow(static_cast<size_t>(height)),
+      _factor(std::max(1, (std::max(width, height) + kLongestFlow - 1) / kLongestFlow)),
+      _flowWidth((width + _factor - 1) / _factor),
+      _flowHeight((height + _factor - 1) / _factor) {
+    if (map.range != RangeKind::Flow) return;
+    _isInside.resize(static_cast<size_t>(_flowWidth) * _flowHeight);
+    _flow.resize(2 * _isInside.size());
+}
 
-void PreviewBuilder::Add(int row, TexelRowView const& texels) {
-    size_t const line = static_cast<size_t>(row / _factor) * _width;
-    size_t const numTexels = _weights.size();
-    for (int x = 0; x < _sourceWidth; ++x) {
-        float const weight = texels.coverage[x];
-        if (!(weight > 0.0f)) continue;
-        size_t const to = line + x / _factor;
-        _weights[to] += weight;
-        for (int c = 0; c < _numChannels; ++c) {
-            size_t const from = static_cast<size_t>(_firstChannel + c) * texels.stride;
-            _sums[c * numTexels + to] += weight * texels.values[from + static_cast<size_t>(x)];
+/// Vectors and colours show their three components; anything else its first channel.
+bool Preview::IsColour() const {
+    return _map.range == RangeKind::Vector || _map.range == RangeKind::UnitVector ||
+           _map.range == RangeKind::Line || _map.range == RangeKind::Colours;
+}
+
+/// Percentiles would cut a cloud of positions, and leave of counts nothing but ones.
+PreviewRange::Rule Preview::GetRule() const {
+    if (_range) return _range->rule;
+    bool const isWhole = _map.range == RangeKind::Vector || IsCount(_map);
+    return isWhole ? PreviewRange::Rule::Full : PreviewRange::Rule::Percentiles;
+}
+
+float Preview::Decode(float value) const {
+    if (_encoding.scale == 0.0) return value;
+    float const decoded =
+        static_cast<float>((static_cast<double>(value) - _encoding.offset) / _encoding.scale);
+    return _map.range == RangeKind::Line ? std::abs(decoded) : decoded;  // a line's sign is free
+}
+
+void Preview::Add(int row, TexelRowView const& texels) {
+    auto& edges = _edgesOfRow[row];
+    for (int x = 0; x < _width; ++x) {
+        bool const wasFilled = edges.size() % 2 == 1;
+        if (wasFilled != static_cast<bool>(texels.isFilled[x])) edges.push_back(x);
+    }
+    if (!NeedsValues()) return AddFlow(row, texels);
+    for (int c = 0; c < GetNumShown(); ++c) {
+        float const* const values =
+            texels.values + static_cast<size_t>(_firstChannel + c) * texels.stride;
+        for (int x = 0; x < _width; ++x) {
+            if (!(texels.coverage[x] > 0.0f)) continue;
+            float const value = Decode(values[x]);
+            _values[c].Add(value);
+            _magnitudes[c].Add(std::abs(value));
         }
     }
 }
 
-/// Vectors show their three components as colours; anything else its first channel.
-bool PreviewBuilder::IsColour() const {
-    return _range == RangeKind::Vector || _range == RangeKind::UnitVector ||
-           _range == RangeKind::Line;
-}
-
-float PreviewBuilder::GetMean(int channel, size_t texel) const {
-    float const mean = _sums[channel * _weights.size() + texel] / _weights[texel];
-    return _range == RangeKind::Line ? std::abs(mean) : mean;  // a line's sign is free
-}
-
-PreviewBuilder::Limits PreviewBuilder::FindLimits() const {
-    Limits limits;
-    if (_range == RangeKind::UnitVector || _range == RangeKind::Line) {
-        limits.low.fill(_range == RangeKind::Line ? 0.0f : -1.0f);
-        limits.high.fill(1.0f);
-        return limits;
-    }
-    bool const isSigned = _range == RangeKind::Signed, isColour = IsColour();
-    for (int c = 0; c < (isColour ? 3 : 1); ++c) {
-        std::vector<float> values;
-        for (size_t texel = 0; texel < _weights.size(); ++texel) {
-            if (!(_weights[texel] > 0.0f)) continue;
-            float const value = GetMean(c, texel);
-            values.push_back(isSigned ? std::abs(value) : value);
-        }
-        if (isSigned) {
-            limits.high[c] = FindQuantile(std::move(values), 0.98);
-            limits.low[c] = -limits.high[c];
-        } else {
-            limits.low[c] = FindQuantile(values, isColour ? 0.0 : 0.02);
-            limits.high[c] = FindQuantile(std::move(values), isColour ? 1.0 : 0.98);
-        }
-    }
-    return limits;
-}
-
-/// \param share  of the way from the low limit to the high one
-Colour PreviewBuilder::ToColour(float share) const {
-    return _range == RangeKind::Signed ? GetDivergingColour(2 * share - 1)
-                                       : GetSequentialColour(share);
-}
-
-Picture PreviewBuilder::Draw() const {
-    if (_range == RangeKind::Flow) return DrawFlow();
-    Limits const limits = FindLimits();
-    Picture picture(std::max(_width, 128), _height + kLegendHeight);
-    auto const share = [&](int c, size_t texel) {
-        float const low = limits.low[c], high = limits.high[c];
-        return high > low ? (GetMean(c, texel) - low) / (high - low) : 0.5f;
-    };
-    for (size_t texel = 0; texel < _weights.size(); ++texel) {
-        if (!(_weights[texel] > 0.0f)) continue;
-        Colour const colour = IsColour() ? Colour{share(0, texel), share(1, texel), share(2, texel)}
-                                         : ToColour(share(0, texel));
-        picture.Set(static_cast<int>(texel) % _width, static_cast<int>(texel) / _width, colour);
-    }
-    DrawLegend(limits, picture);
-    return picture;
-}
-
-/// Least value, ramp, largest value.
-void PreviewBuilder::DrawLegend(Limits const& limits, Picture& picture) const {
-    int const numShown = IsColour() ? 3 : 1;
-    float const least = *std::min_element(limits.low.begin(), limits.low.begin() + numShown);
-    float const most = *std::max_element(limits.high.begin(), limits.high.begin() + numShown);
-    std::string const left = fmt::format("{:.3g}", least), right = fmt::format("{:.3g}", most);
-    int const textY = _height + 7, rampBegin = 8 + Picture::GetTextWidth(left) + 4;
-    int const rampEnd = picture.GetWidth() - 8 - Picture::GetTextWidth(right) - 8;
-    picture.Write(8, textY, left);
-    picture.Write(picture.GetWidth() - 8 - Picture::GetTextWidth(right), textY, right);
-    for (int x = rampBegin; x < rampEnd; ++x) {
-        float const t = static_cast<float>(x - rampBegin) /
-                        static_cast<float>(std::max(1, rampEnd - rampBegin - 1));
-        Colour const colour = IsColour() ? Colour{t, t, t} : ToColour(t);
-        for (int y = 0; y < 14; ++y) picture.Set(x, textY + y, colour);
-    }
-}
-
-Picture PreviewBuilder::DrawFlow() const {
-    size_t const numTexels = _weights.size();
-    std::vector<float> flow(2 * numTexels, 0.0f);
-    std::vector<uint8_t> isInside(numTexels, 0);
-    for (size_t texel = 0; texel < numTexels; ++texel) {
-        if (!(_weights[texel] > 0.0f)) continue;
-        isInside[texel] = 1;
+void Preview::AddFlow(int row, TexelRowView const& texels) {
+    float const* const u = texels.values + static_cast<size_t>(_firstChannel) * texels.stride;
+    float const* const v = u + texels.stride;
+    size_t const first = static_cast<size_t>(row / _factor) * _flowWidth;
+    for (int x = 0; x < _width; ++x) {
+        if (!texels.isFilled[x]) continue;
+        size_t const cell = first + static_cast<size_t>(x / _factor);
+        _isInside[cell] = 1;
         // Texture coordinates to texels, v upwards.
-        flow[2 * texel] = (GetMean(0, texel) - _zero) * static_cast<float>(_width);
-        flow[2 * texel + 1] = -(GetMean(1, texel) - _zero) * static_cast<float>(_height);
+        _flow[2 * cell] += Decode(u[x]) * static_cast<float>(_width);
+        _flow[2 * cell + 1] -= Decode(v[x]) * static_cast<float>(_height);
     }
-    std::vector<uint8_t> const grey = ConvolveLines(_width, _height, flow, isInside);
-    Picture picture(_width, _height);
-    for (size_t pixel = 0; pixel < grey.size(); ++pixel) picture.SetGrey(pixel, grey[pixel]);
+}
+
+void Preview::Prepare() {
+    if (!NeedsValues()) {
+        _streaks = ConvolveLines(_flowWidth, _flowHeight, _flow, _isInside);
+        return;
+    }
+    for (int c = 0; c < GetNumShown(); ++c) _scales[c] = FindScale(c);
+}
+
+ColourScale Preview::FindScale(int channel) const {
+    constexpr double kFirst = 0.01, kLast = 0.99;
+    ColourScale scale{.isSigned = _map.range == RangeKind::Signed};
+    auto const between = [&](double low, double high) {
+        scale.low = static_cast<float>(low);
+        scale.high = static_cast<float>(high);
+        return scale;
+    };
+    if (_map.range == RangeKind::UnitVector) return between(-1.0, 1.0);
+    if (_map.range == RangeKind::Line || _map.range == RangeKind::Colours) return between(0.0, 1.0);
+    ValueHistogram const &values = _values[channel], &magnitudes = _magnitudes[channel];
+    if (values.GetCount() == 0) return scale;
+    PreviewRange::Rule const rule = GetRule();
+    if (rule == PreviewRange::Rule::Given) return between(_range->low, _range->high);
+    if (_map.limits) return between((*_map.limits)[0], (*_map.limits)[1]);
+    bool const isCut = rule == PreviewRange::Rule::Percentiles;
+    between(isCut ? values.FindQuantile(kFirst) : values.GetMin(),
+            isCut ? values.FindQuantile(kLast) : values.GetMax());
+    if (scale.isSigned) {
+        scale.high = std::max(std::abs(scale.low), std::abs(scale.high));
+        scale.low = -scale.high;
+    }
+    if (rule == PreviewRange::Rule::Asinh) scale.linear = magnitudes.FindQuantile(0.5);
+    return scale;
+}
+
+Colour Preview::FindColour(int x, std::array<float const*, 3> const& values) const {
+    if (!NeedsValues()) return {};
+    auto const share = [&](int c) { return _scales[c].ToShare(Decode(values[c][x])); };
+    if (IsColour()) return {share(0), share(1), share(2)};
+    return _scales[0].ToColour(Decode(values[0][x]));
+}
+
+void Preview::DrawRow(int row, std::array<float const*, 3> const& values, uint8_t* rgb) const {
+    std::fill_n(rgb, 3 * static_cast<size_t>(_width), kPictureBackground);
+    auto const& edges = _edgesOfRow[row];
+    for (size_t run = 0; run < edges.size(); run += 2) {
+        int const end = run + 1 < edges.size() ? edges[run + 1] : _width;
+        for (int x = edges[run]; x < end; ++x) {
+            uint8_t* const pixel = rgb + 3 * static_cast<size_t>(x);
+            if (NeedsValues()) {
+                std::ranges::copy(ToBytes(FindColour(x, values)), pixel);
+            } else {
+                size_t const cell = static_cast<size_t>(row / _factor) * _flowWidth +
+                                    static_cast<size_t>(x / _factor);
+                std::fill_n(pixel, 3, _streaks[cell]);
+            }
+        }
+    }
+}
+
+/// Lines of text: the map with its unit, what it is of, and what its colours mean where no bar can
+/// tell.
+std::vector<std::string> Preview::Describe(std::string const& of) const {
+    bool const hasUnits = _map.units != "none";
+    std::vector<std::string> lines{_map.name + (hasUnits ? ", " + _map.units : ""), of};
+    if (_map.GetNumChannels() > GetNumShown() && NeedsValues())
+        lines[0] = _map.name + ": " + _map.channels.front() + (hasUnits ? ", " + _map.units : "");
+    if (_map.range == RangeKind::Flow) lines.push_back("streaks along the flow");
+    if (_map.range == RangeKind::UnitVector) lines.push_back("R, G, B: x, y, z from -1 to 1");
+    if (_map.range == RangeKind::Line) lines.push_back("R, G, B: x, y, z without sign");
+    for (int c = 0; c < 3 && _map.range == RangeKind::Vector; ++c) {
+        lines.push_back(
+            fmt::format("{}: {:.4g} to {:.4g}", "RGB"[c], _scales[c].low, _scales[c].high));
+    }
+    if (IsColour() || !NeedsValues()) return lines;
+    if (_scales[0].IsConstant()) lines.push_back(fmt::format("{:.3g} everywhere", _scales[0].low));
+    if (_scales[0].linear > 0.0f)
+        lines.push_back(fmt::format("asinh, linear up to {:.3g}", _scales[0].linear));
+    return lines;
+}
+
+Picture Preview::DrawLegend(std::string const& of) const {
+    bool const hasBar = !IsColour() && NeedsValues() && !_scales[0].IsConstant();
+    auto const lines = Describe(of);
+    int width = kLeastWidth;
+    for (auto const& line : lines)
+        width = std::max(width, Picture::GetTextWidth(line) + 2 * kMargin);
+    int const textHeight = kLineHeight * static_cast<int>(lines.size());
+    Picture picture(width, textHeight + 2 * kMargin + (hasBar ? ColourScale::kBarHeight : 0));
+    int y = kMargin;
+    for (auto const& line : lines) {
+        picture.Write(kMargin, y, line);
+        y += kLineHeight;
+    }
+    if (hasBar) _scales[0].DrawBar(y, picture);
     return picture;
 }
 

@@ -39,6 +39,7 @@ void SampleAverages::Add(TexelStrip const& texels, std::vector<float> const& pla
     size_t const numTexels = strip.GetNumTexels();
     float* lineSum = _lineSums.data();
     for (ChannelGroup const& group : _groups) {
+        if (group.averaging == Averaging::Count) continue;  // of the texel's centre alone
         size_t const first = static_cast<size_t>(group.first) * numTexels;
         if (group.averaging != Averaging::Line) {
             size_t const end = first + static_cast<size_t>(group.count) * numTexels;
@@ -70,6 +71,7 @@ void SampleAverages::Finish(int numSamples, Strip& strip) const {
         if (_numHits[k] == 0) continue;
         float const* lineSum = _lineSums.data() + k;
         for (ChannelGroup const& group : _groups) {
+            if (group.averaging == Averaging::Count) continue;
             values.clear();
             for (int c = 0; c < group.count; ++c) {
                 values.push_back(strip.GetPlane(group.first + c) + k);

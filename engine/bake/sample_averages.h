@@ -9,7 +9,7 @@
 namespace limn::engine {
 
 /// Averages N x N samples per texel over those that are covered: values plainly, unit vectors to
-/// unit vectors, lines as d d^T. One per thread; its memory is used again.
+/// unit vectors, lines as d d^T; counts are left alone. One per thread; its memory is used again.
 class SampleAverages {
 public:
     /// \param groups  of all planes, in their order

@@ -6,7 +6,8 @@
 
 namespace limn::engine {
 
-std::shared_ptr<Strip> StripPool::Acquire(int index, int numPlanes, TileGrid const& grid) {
+std::shared_ptr<Strip> StripPool::Acquire(int index, int numPlanes, TileGrid const& grid,
+                                          bool countsFaces) {
     std::unique_ptr<Strip> strip;
     {
         std::lock_guard const lock(_mutex);
@@ -18,6 +19,7 @@ std::shared_ptr<Strip> StripPool::Acquire(int index, int numPlanes, TileGrid con
     if (!strip) strip = std::make_unique<Strip>();
     strip->index = index;
     strip->numPlanes = numPlanes;
+    strip->texels.countsFaces = countsFaces;
     int const firstRow = index * Strip::kRows;
     strip->texels.Resize(firstRow, std::min(Strip::kRows, grid.height - firstRow), grid.width);
     size_t const numTexels = strip->texels.owner.size(), count = static_cast<size_t>(numPlanes);
@@ -27,6 +29,7 @@ std::shared_ptr<Strip> StripPool::Acquire(int index, int numPlanes, TileGrid con
     strip->low.assign(count, std::numeric_limits<float>::infinity());
     strip->high.assign(count, -std::numeric_limits<float>::infinity());
     strip->numCovered = 0;
+    strip->leftOut.clear();
     return {strip.release(), [this](Strip* done) {
                 std::unique_ptr<Strip> owned(done);
                 std::lock_guard const lock(_mutex);

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <vector>
 
+#include "engine/bake/maps/tangential_part.h"
 #include "engine/bake/raster/uv_raster.h"
 #include "engine/images/exr_writer.h"
 #include "far_ext/rows/large_array.h"
@@ -26,6 +27,7 @@ struct Strip {
     std::vector<float> coverage;        ///< [row][column], 0 to 1; empty without supersampling
     std::vector<float> low, high;  ///< per plane, over covered texels; low > high if there are none
     size_t numCovered = 0;
+    std::vector<TangentialPart> leftOut;  ///< per map
 
     size_t GetNumTexels() const { return isCovered.size(); }
     float* GetPlane(int plane) { return planes.data() + GetOffset(plane); }
@@ -42,8 +44,9 @@ private:
 /// strips.
 class StripPool {
 public:
-    /// A strip of `numPlanes` planes; no texel has a value yet.
-    std::shared_ptr<Strip> Acquire(int index, int numPlanes, TileGrid const& grid);
+    /// A strip of `numPlanes` planes; no texel has a value yet. \param countsFaces  its texels do
+    std::shared_ptr<Strip> Acquire(int index, int numPlanes, TileGrid const& grid,
+                                   bool countsFaces);
 
 private:
     std::mutex _mutex;

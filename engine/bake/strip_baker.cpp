@@ -10,6 +10,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "engine/bake/overlap_log.h"
 #include "engine/images/pixel_kernel.h"
 #include "eval/kernels/dispatch.h"
 #include "far_ext/error.h"
@@ -38,13 +39,16 @@ struct StripBaker::Worker {
     std::vector<float> values;        // of a map, for a block of samples
     far_ext::LargeArray<int> places;  // the texels they belong to
     std::vector<std::array<double, 4>> jacobians;
+    OverlapLog overlaps;
     SampleAverages averages;
-    TexelStrip sampleTexels;
+    TexelStrip sampleTexels, centreTexels;
+    std::vector<int> numFaces;  // over texels
     std::vector<float> samplePlanes;
 
     explicit Worker(StripBaker const& baker)
         : tree(baker._surface, baker._values),
-          raster(baker._uvSurface, baker._model.GetUVs()),
+          raster(baker._faces.surface, baker._faces.uvs),
+          overlaps(baker._model),
           averages(baker._groups) {
         for (Pass const& pass : baker._passes) {
             surfaces.emplace_back(tree, pass.quantity, baker._options.orientation, pass.values);
@@ -54,35 +58,6 @@ struct StripBaker::Worker {
 };
 
 namespace {
-
-int FindUVChannel(Model const& model) {
-    if (model.HasUVs()) return 0;
-    throw Error(ErrorCode::BadMesh,
-                fmt::format("{}: the mesh has no texture coordinates; a bake needs them ('vt' in "
-                            "OBJ, s,t in PLY)",
-                            model.GetPath()));
-}
-
-/// Texels are found in double, which at more than this many tiles from 1001 tells those of the
-/// largest images apart no more.
-constexpr double kFarthestUV = 1e4;
-
-/// Refuses the first baked face that reaches too far.
-void RefuseFarUVs(Model const& model, std::vector<char> const& isBaked) {
-    auto const& values = model.GetCage().fvarChannels[0].valueIndices;
-    size_t corner = 0;
-    for (Index face = 0; face < model.GetCage().GetNumFaces(); ++face) {
-        for (int i = 0; i < model.GetCage().faceSizes[face]; ++i, ++corner) {
-            double const* const uv = &model.GetUVs()[2 * static_cast<size_t>(values[corner])];
-            double const farthest = std::max(std::abs(uv[0]), std::abs(uv[1]));
-            if (!isBaked[face] || farthest <= kFarthestUV) continue;
-            throw Error(ErrorCode::BadMesh,
-                        fmt::format("{}: {} has a texture coordinate of {}; up to {} in magnitude "
-                                    "can be baked",
-                                    model.GetPath(), model.NameFace(face), farthest, kFarthestUV));
-        }
-    }
-}
 
 /// to[places[i]] = from[i], eight at a time where the places lie side by side.
 void Scatter(std::span<int const> places, float const* from, float* to) {
@@ -118,29 +93,18 @@ StripBaker::Worker& StripBaker::LocalWorker() {
     return *worker;
 }
 
-StripBaker::StripBaker(Model const& model, BakeOptions const& options,
+StripBaker::StripBaker(Model const& model, TexturedFaces const& faces, BakeOptions const& options,
                        std::vector<std::unique_ptr<Map>> const& maps, Job& job)
     : _model(model),
+      _faces(faces),
       _options(options),
       _maps(maps),
       _job(job),
       _surface(model.GetRefiner()),
-      _uvSurface(model.GetRefiner(), FindUVChannel(model)),
-      _baked{model, _surface, _uvSurface, _isBaked, options.width, options.height},
+      _baked{model, _surface, faces.surface, faces.isBaked, options.width, options.height},
       _hasTexels(model.GetCage().faceSizes.size()) {
-    FindBakedFaces();
-    RefuseFarUVs(_model, _isBaked);
     for (auto const& map : maps) map->Prepare(_baked, job);
     ArrangePasses();
-    FindBounds();
-}
-
-void StripBaker::FindBakedFaces() {
-    _isBaked.assign(_model.GetCage().faceSizes.size(), 1);
-    if (!_options.groups.empty()) _isBaked = _model.SelectGroups(_options.groups);
-    for (Index face = 0; face < _surface.GetNumFaces(); ++face) {
-        if (!_surface.HasLimit(face)) _isBaked[face] = 0;
-    }
 }
 
 /// Sorts maps by the precision they are evaluated at, which the least of what they need decides:
@@ -157,6 +121,7 @@ void StripBaker::ArrangePasses() {
             MapTraits const& traits = _maps[m]->GetTraits();
             int const plane = firstPlane;
             firstPlane += traits.GetNumChannels();
+            if (traits.needsFaceCounts) continue;
             if (!eval::SurfaceSampler::SharesBits(traits.quantity, least)) continue;
             pass.quantity = std::max(pass.quantity, traits.quantity);
             pass.needsJacobian |= traits.needsJacobian;
@@ -169,73 +134,94 @@ void StripBaker::ArrangePasses() {
         numChannels += pass.values.count;
         if (!pass.maps.empty()) _passes.push_back(std::move(pass));
     }
-    for (auto const& map : _maps) {
-        for (ChannelGroup group : map->GetTraits().GetGroups()) {
+    for (size_t m = 0; m < _maps.size(); ++m) {
+        MapTraits const& traits = _maps[m]->GetTraits();
+        if (traits.needsFaceCounts) _countedMaps.push_back({m, _numPlanes});
+        for (ChannelGroup group : traits.GetGroups()) {
             group.first += _numPlanes;
             _groups.push_back(group);
         }
-        _numPlanes += map->GetTraits().GetNumChannels();
+        _numPlanes += traits.GetNumChannels();
     }
-}
-
-void StripBaker::FindBounds() {
-    _bounds.resize(_isBaked.size());
-    tbb::parallel_for(tbb::blocked_range<Index>(0, _surface.GetNumFaces(), 512),
-                      [&](auto const& range) {
-                          _job.CheckStopped();
-                          UVRaster& raster = LocalWorker().raster;
-                          for (Index face = range.begin(); face != range.end(); ++face) {
-                              if (_isBaked[face]) _bounds[face] = raster.GetBounds(face);
-                          }
-                      });
-}
-
-bool StripBaker::LeavesUdimRange(Index face) {
-    constexpr double kSlack = 1e-4;
-    UVBounds const& b = _bounds[face];
-    if (b.minU >= -kSlack && b.maxU <= 10.0 + kSlack && b.minV >= -kSlack) return false;
-    // The bounds are loose; look at the surface itself.
-    UVRaster& raster = LocalWorker().raster;
-    raster.Bind(face);
-    constexpr int kSteps = 4;
-    for (int domain = 0; domain < _uvSurface.GetNumDomains(face); ++domain) {
-        for (int j = 0; j <= kSteps; ++j) {
-            for (int i = 0; i <= kSteps - (_uvSurface.IsLoop() ? j : 0); ++i) {
-                auto const [u, v] = raster.Evaluate(domain, static_cast<double>(i) / kSteps,
-                                                    static_cast<double>(j) / kSteps);
-                if (u < -kSlack || u > 10.0 + kSlack || v < -kSlack) return true;
-            }
-        }
-    }
-    return false;
 }
 
 std::shared_ptr<Strip> StripBaker::MakeStrip(int index, TileGrid const& grid,
                                              FaceBins::Blocks const& blocks) {
     _job.CheckStopped();
     Worker& worker = LocalWorker();
-    std::shared_ptr<Strip> strip = _pool.Acquire(index, _numPlanes, grid);
-    if (_options.samplesPerSide > 1) {
+    bool const isSupersampled = _options.samplesPerSide > 1;
+    std::shared_ptr<Strip> strip =
+        _pool.Acquire(index, _numPlanes, grid, !_countedMaps.empty() && !isSupersampled);
+    if (isSupersampled) {
         Supersample(worker, grid, blocks, *strip);
-        FinishBlock(*strip, 0, grid.width);
+        if (!_countedMaps.empty()) CountCentres(worker, grid, blocks, *strip);
+        FinishBlock(worker, *strip, 0, grid.width);
     } else {
-        auto const finish = [&](int firstColumn, int numColumns) {
-            for (int row = 0; row < strip->texels.numRows; ++row) {
-                size_t const at = static_cast<size_t>(row) * grid.width + firstColumn;
-                for (size_t i = at; i < at + numColumns; ++i) {
-                    strip->isCovered[i] = strip->texels.owner[i] >= 0;
-                }
-            }
-            FinishBlock(*strip, firstColumn, numColumns);
-        };
-        RasterSamples(worker, grid, blocks, strip->texels, strip->planes.data(), finish);
+        BakeCentres(worker, grid, blocks, *strip);
     }
+    for (auto const& map : worker.maps) strip->leftOut.push_back(map->TakeTangentialPart());
     _texelsCovered += strip->numCovered;
     return strip;
 }
 
+/// One sample per texel.
+void StripBaker::BakeCentres(Worker& worker, TileGrid const& grid, FaceBins::Blocks const& blocks,
+                             Strip& strip) {
+    auto const finish = [&](int firstColumn, int numColumns) {
+        for (int row = 0; row < strip.texels.numRows; ++row) {
+            size_t const at = static_cast<size_t>(row) * grid.width + firstColumn;
+            for (size_t i = at; i < at + numColumns; ++i) {
+                strip.isCovered[i] = strip.texels.owner[i] >= 0;
+            }
+        }
+        FillCounts(worker, strip.texels, firstColumn, numColumns, strip.planes.data());
+        FinishBlock(worker, strip, firstColumn, numColumns);
+    };
+    RasterSamples(worker, grid, blocks, strip.texels, strip.planes.data(), finish);
+}
+
+/// Lets the maps that need face counts fill their planes, in a block whose texels are all known.
+void StripBaker::FillCounts(Worker& worker, TexelStrip const& texels, int firstColumn,
+                            int numColumns, float* planes) const {
+    if (_countedMaps.empty()) return;
+    worker.places.clear();
+    worker.numFaces.clear();
+    for (int row = 0; row < texels.numRows; ++row) {
+        for (int column = firstColumn; column < firstColumn + numColumns; ++column) {
+            int const texel = row * texels.width + column;
+            int const numFaces = texels.CountFaces(static_cast<size_t>(texel));
+            if (numFaces == 0) continue;
+            worker.places.push_back(texel);
+            worker.numFaces.push_back(numFaces);
+        }
+    }
+    for (CountedMap const& counted : _countedMaps) {
+        worker.values.resize(worker.numFaces.size());
+        worker.maps[counted.map]->EvaluateCounts(worker.numFaces, worker.values.data());
+        if (_options.encoding) Encode(*_options.encoding, worker.values);
+        size_t const plane = static_cast<size_t>(counted.plane);
+        Scatter(worker.places, worker.values.data(), planes + plane * texels.owner.size());
+    }
+}
+
+/// Face counts beside supersampled maps: they are those of the texels' centres all the same.
+void StripBaker::CountCentres(Worker& worker, TileGrid const& grid, FaceBins::Blocks const& blocks,
+                              Strip& strip) {
+    TexelStrip& texels = worker.centreTexels;
+    texels.countsFaces = true;
+    texels.Reset(strip.texels.firstRow, strip.texels.numRows, strip.texels.width);
+    for (size_t block = 0; block < blocks.size(); ++block) {
+        int const firstColumn = static_cast<int>(block) * Strip::kBlockColumns;
+        int const numColumns = std::min(Strip::kBlockColumns, texels.width - firstColumn);
+        _job.CheckStopped();
+        for (Index face : blocks[block])
+            worker.raster.Rasterise(face, grid, texels, firstColumn, numColumns);
+    }
+    FillCounts(worker, texels, 0, texels.width, strip.planes.data());
+}
+
 /// Counts and ranges of a block whose texels are all known.
-void StripBaker::FinishBlock(Strip& strip, int firstColumn, int numColumns) {
+void StripBaker::FinishBlock(Worker& worker, Strip& strip, int firstColumn, int numColumns) {
     size_t const count = static_cast<size_t>(numColumns);
     for (int row = 0; row < strip.texels.numRows; ++row) {
         size_t const at = static_cast<size_t>(row) * strip.texels.width + firstColumn;
@@ -243,10 +229,7 @@ void StripBaker::FinishBlock(Strip& strip, int firstColumn, int numColumns) {
         size_t numCovered = 0;
         for (size_t i = 0; i < count; ++i) numCovered += covered[i];
         strip.numCovered += numCovered;
-        if (uint8_t const* const overlap = &strip.texels.overlap[at];
-            std::memchr(overlap, 1, count)) {
-            _overlaps += static_cast<size_t>(std::count(overlap, overlap + count, 1));
-        }
+        worker.overlaps.Count({&strip.texels.overlap[at], count});
         if (uint8_t const* const failed = &strip.texels.failed[at]; std::memchr(failed, 1, count)) {
             for (size_t i = 0; i < count; ++i) _newtonFailures += failed[i] && !covered[i];
         }
@@ -261,11 +244,9 @@ void StripBaker::FinishBlock(Strip& strip, int firstColumn, int numColumns) {
 void StripBaker::ClearBlock(TexelStrip& texels, float* planes, int firstColumn,
                             int numColumns) const {
     size_t const count = static_cast<size_t>(numColumns), numTexels = texels.owner.size();
+    texels.ClearColumns(firstColumn, numColumns);
     for (int row = 0; row < texels.numRows; ++row) {
         size_t const at = static_cast<size_t>(row) * texels.width + firstColumn;
-        std::fill_n(&texels.owner[at], count, -1);
-        std::fill_n(&texels.overlap[at], count, uint8_t{0});
-        std::fill_n(&texels.failed[at], count, uint8_t{0});
         for (int plane = 0; plane < _numPlanes; ++plane) {
             std::fill_n(planes + plane * numTexels + at, count, 0.0f);
         }
@@ -295,6 +276,7 @@ void StripBaker::RasterSamples(Worker& worker, TileGrid const& grid, FaceBins::B
                 EvaluateHits(worker, {face, domain, s, t}, places, planes, planeSize);
             }
         }
+        worker.overlaps.Take(texels);
         finish(firstColumn, numColumns);
     }
 }
@@ -380,20 +362,21 @@ std::string StripBaker::NamePlace(eval::SurfacePlace const& place) const {
 
 void StripBaker::AddCounts(BakeReport& report, std::vector<std::string>& movedPlaces) const {
     report.texelsCovered = _texelsCovered;
-    report.overlaps = _overlaps;
     report.newtonFailures = _newtonFailures;
     std::set<std::string> places;
     for (auto const& worker : _workers) {
         if (!worker) continue;
+        worker->overlaps.AddTo(report);
+        for (auto const& map : worker->maps) report.degenerateSamples += map->GetNumDegenerate();
+        if (worker->surfaces.empty()) continue;
         auto const& counts = worker->surfaces.back().GetCounts();  // of the pass that needs most
         report.movedSamples += counts.moved;
         report.degenerateSamples += counts.degenerate;
-        for (auto const& map : worker->maps) report.degenerateSamples += map->GetNumDegenerate();
         for (auto const& place : counts.movedPlaces) places.insert(NamePlace(place));
     }
     movedPlaces.assign(places.begin(), places.end());
     for (Index face = 0; face < _surface.GetNumFaces(); ++face) {
-        if (_isBaked[face] && !_hasTexels[face]) report.facesWithoutTexels.push_back(face);
+        if (_faces.isBaked[face] && !_hasTexels[face]) report.facesWithoutTexels.push_back(face);
     }
 }
 

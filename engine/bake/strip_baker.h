@@ -12,6 +12,7 @@
 #include "engine/bake/bake_report.h"
 #include "engine/bake/maps/map.h"
 #include "engine/bake/raster/face_bins.h"
+#include "engine/bake/raster/textured_faces.h"
 #include "engine/bake/sample_averages.h"
 #include "engine/bake/strip.h"
 #include "eval/surface/surface_sampler.h"
@@ -26,17 +27,12 @@ class StripBaker {
 public:
     /// Prepares the maps. Everything is kept by reference.
     ///
-    /// \throws Error  BadMesh: no UVs; as Map::Prepare
-    StripBaker(Model const& model, BakeOptions const& options,
+    /// \throws Error  as Map::Prepare
+    StripBaker(Model const& model, TexturedFaces const& faces, BakeOptions const& options,
                std::vector<std::unique_ptr<Map>> const& maps, Job& job);
     ~StripBaker();
 
-    /// Bounds of faces' texture coordinates; meaningless where a face is not baked.
-    std::vector<UVBounds> const& GetBounds() const { return _bounds; }
-    std::vector<char> const& GetIsBaked() const { return _isBaked; }
-
-    /// True if some place of the face lies outside u in [0, 10], v >= 0 by more than rounding.
-    bool LeavesUdimRange(Index face);
+    TexturedFaces const& GetFaces() const { return _faces; }
 
     /// \param grid    of the tile, without sample offsets
     /// \param blocks  per Strip::kBlockColumns columns all faces that may cover a texel there
@@ -49,10 +45,13 @@ public:
 private:
     struct Pass;
     struct Worker;
+    /// A map that needs face counts, apart from all passes.
+    struct CountedMap {
+        size_t map;  // into _maps
+        int plane;   // of the strip
+    };
 
-    void FindBakedFaces();
     void ArrangePasses();
-    void FindBounds();
     Worker& LocalWorker();
     template <class Finish>
     void RasterSamples(Worker& worker, TileGrid const& grid, FaceBins::Blocks const& blocks,
@@ -62,25 +61,31 @@ private:
     void EvaluateBlock(Worker& worker, size_t pass, FaceSamples const& samples, SampleBlock& block,
                        float const* surface, float* planes, size_t planeSize);
     void ClearBlock(TexelStrip& texels, float* planes, int firstColumn, int numColumns) const;
-    void FinishBlock(Strip& strip, int firstColumn, int numColumns);
+    void FinishBlock(Worker& worker, Strip& strip, int firstColumn, int numColumns);
+    void BakeCentres(Worker& worker, TileGrid const& grid, FaceBins::Blocks const& blocks,
+                     Strip& strip);
+    void FillCounts(Worker& worker, TexelStrip const& texels, int firstColumn, int numColumns,
+                    float* planes) const;
+    void CountCentres(Worker& worker, TileGrid const& grid, FaceBins::Blocks const& blocks,
+                      Strip& strip);
     void Supersample(Worker& worker, TileGrid const& grid, FaceBins::Blocks const& blocks,
                      Strip& strip);
     std::string NamePlace(eval::SurfacePlace const& place) const;
 
     Model const& _model;
+    TexturedFaces const& _faces;
     BakeOptions const& _options;
     std::vector<std::unique_ptr<Map>> const& _maps;
     Job& _job;
-    eval::LimitSurface _surface, _uvSurface;
-    std::vector<char> _isBaked;
+    eval::LimitSurface _surface;
     BakedSurface const _baked;
-    std::vector<UVBounds> _bounds;
     std::vector<Pass> _passes;
+    std::vector<CountedMap> _countedMaps;
     std::vector<eval::FaceTree::Values> _values;  // of the faces' trees: positions, then the maps'
     int _numPlanes = 0;
     std::vector<ChannelGroup> _groups;  // of all planes
     std::vector<std::atomic<bool>> _hasTexels;
-    std::atomic<size_t> _texelsCovered{0}, _overlaps{0}, _newtonFailures{0};
+    std::atomic<size_t> _texelsCovered{0}, _newtonFailures{0};
     StripPool _pool;
     tbb::enumerable_thread_specific<std::unique_ptr<Worker>> _workers;
 };

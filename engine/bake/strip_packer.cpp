@@ -16,8 +16,12 @@ namespace {
 /// `isFilled` which.
 class Padder {
 public:
-    Padder(std::span<std::shared_ptr<Strip> const> window, Strip& strip, int padding)
-        : _strip(strip), _coverage{window.front()->texels.firstRow, strip.texels.width, {}} {
+    /// \param isPadded  per plane
+    Padder(std::span<std::shared_ptr<Strip> const> window, Strip& strip, int padding,
+           std::vector<char> const& isPadded)
+        : _strip(strip),
+          _isPadded(isPadded),
+          _coverage{window.front()->texels.firstRow, strip.texels.width, {}} {
         bool const isAnyCovered = std::any_of(window.begin(), window.end(),
                                               [](auto const& s) { return s->numCovered > 0; });
         _hasWork = padding > 0 && isAnyCovered && strip.numCovered < strip.GetNumTexels();
@@ -48,6 +52,7 @@ public:
                 size_t const from = static_cast<size_t>(y - source.texels.firstRow) * width +
                                     column + PaddingSearch::GetOffsetX(*offset);
                 for (int plane = 0; plane < _strip.numPlanes; ++plane) {
+                    if (!_isPadded[plane]) continue;
                     _strip.GetPlane(plane)[to] = source.GetPlane(plane)[from];
                 }
                 _strip.isFilled[to] = 1;
@@ -57,15 +62,29 @@ public:
 
 private:
     Strip& _strip;
+    std::vector<char> const& _isPadded;
     CoverageRows _coverage;
     std::vector<Strip const*> _stripOfRow;
     bool _hasWork = false;
 };
 
+/// Per plane: all but counts.
+std::vector<char> FindPaddedPlanes(std::vector<FileLayout> const& files, int numPlanes) {
+    std::vector<char> isPadded(static_cast<size_t>(numPlanes), 1);
+    for (FileLayout const& file : files) {
+        for (ChannelGroup const& group : file.groups) {
+            if (group.averaging != Averaging::Count) continue;
+            std::fill_n(isPadded.begin() + file.firstPlane + group.first, group.count, 0);
+        }
+    }
+    return isPadded;
+}
+
 void PadStrip(std::span<std::shared_ptr<Strip> const> window, Strip& strip, int padding,
-              Job const& job) {
+              std::vector<FileLayout> const& files, Job const& job) {
     strip.isFilled = strip.isCovered;
-    Padder const padder(window, strip, padding);
+    auto const isPadded = FindPaddedPlanes(files, strip.numPlanes);
+    Padder const padder(window, strip, padding, isPadded);
     if (!padder.HasWork()) return;
     constexpr int tileSize = ExrSpec::kTileSize;
     int const width = strip.texels.width;
@@ -88,7 +107,7 @@ PackedStrip PackStrip(std::span<std::shared_ptr<Strip> const> window, size_t at,
     PackedStrip packed;
     packed.strip = window[at];
     Strip& strip = *packed.strip;
-    PadStrip(window, strip, padding, job);
+    PadStrip(window, strip, padding, files, job);
     if (std::any_of(sinks.begin(), sinks.end(),
                     [](auto const& sink) { return sink && sink->WantsCoverage(); })) {
         packed.coverage.resize(strip.GetNumTexels());

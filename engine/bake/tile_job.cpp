@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <exception>
 #include <limits>
+#include <span>
 
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
@@ -57,7 +58,7 @@ private:
 
 void TileJob::Run() {
     TileGrid const grid = TileGrid::OfTile(_tile, _options.width, _options.height);
-    FaceBins const bins(_baker.GetBounds(), _baker.GetIsBaked(), grid, Strip::kRows,
+    FaceBins const bins(_baker.GetFaces().bounds, _baker.GetFaces().isBaked, grid, Strip::kRows,
                         Strip::kBlockColumns);
     int const numStrips = bins.GetNumStrips();
     int const halo = CountStrips(_options.padding);
@@ -109,8 +110,12 @@ void TileJob::Run() {
 }
 
 void TileJob::Write(PackedStrip& strip) {
+    size_t firstMap = 0;
     for (size_t f = 0; f < _files.size(); ++f) {
+        std::span const leftOut(strip.strip->leftOut.data() + firstMap, _files[f].maps.size());
+        firstMap += leftOut.size();
         if (!_sinks[f]) continue;
+        for (TangentialPart const& part : leftOut) _outputs[f].leftOut.Add(part);
         PackedStrip::Output& packed = strip.outputs[f];
         _sinks[f]->Write(packed.view, *packed.rows);
         _outputs[f].min = std::min(_outputs[f].min, packed.min);

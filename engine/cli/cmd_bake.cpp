@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <charconv>
+#include <filesystem>
+#include <optional>
+#include <sstream>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "engine/bake/audit/audit.h"
 #include "engine/bake/bake.h"
+#include "engine/bake/group_bakes.h"
 #include "engine/bake/maps/map_table.h"
+#include "engine/bake/output_names.h"
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
 #include "engine/cli/option_names.h"
+#include "engine/cli/option_rules.h"
 #include "engine/cli/parse_number.h"
 #include "engine/cli/word_option.h"
 #include "engine/images/exr_names.h"
@@ -19,11 +27,14 @@ namespace limn::cli {
 
 namespace {
 
+constexpr char const* kAllMaps = "all";
+
 struct BakeArguments {
-    std::vector<std::string> meshes, tiles;
-    std::string size = "2048", compression = "zip", against, rest, fieldPath, encode, noiseRamp;
+    std::vector<std::string> meshes, tiles, seamBounds;
+    std::string size = "2048", compression = "zip", against, rest, fieldPath, encode, noiseRamp,
+                previewRange, half;
     bool hasAudit = false;
-    double auditBound = 1e-3;
+    engine::AuditBounds bounds;
     engine::BakeOptions options;
 };
 
@@ -71,10 +82,76 @@ engine::Encoding ParseEncoding(std::string const& text) {
             ParseNumber("--encode", std::string_view(text).substr(comma + 1))};
 }
 
+/// "mean,normal", or kAllMaps.
+void ParseHalf(std::string const& text, engine::BakeOptions& options) {
+    options.isHalf = !text.empty();
+    if (text.empty() || text == kAllMaps) return;
+    std::istringstream words(text);
+    for (std::string map; std::getline(words, map, ',');) {
+        if (std::ranges::find(options.maps, map) == options.maps.end()) {
+            throw Error(ErrorCode::BadOption,
+                        fmt::format("--half={}: '{}' is no map that is baked", text, map));
+        }
+        options.halfMaps.push_back(map);
+    }
+}
+
+/// "0.1", or "mean=0.1" for one map.
+engine::AuditBounds ParseBounds(BakeArguments const& a) {
+    engine::AuditBounds bounds = a.bounds;
+    for (std::string const& text : a.seamBounds) {
+        size_t const equals = text.rfind('=');
+        double const bound = ParseNumber("--seam-bound", std::string_view(text).substr(equals + 1));
+        if (equals == std::string::npos)
+            bounds.seam = bound;
+        else
+            bounds.seamOfMap[text.substr(0, equals)] = bound;
+    }
+    engine::CheckBounds(bounds, a.options.maps);
+    return bounds;
+}
+
+/// The flags that concern single maps, and the members they set.
+struct MapFlag {
+    char const* flag;
+    char const* member;
+};
+constexpr MapFlag kMapFlags[] = {
+    {"--against", "against"},        {"--rest", "rest"},           {"--bands", "bands"},
+    {"--vector", "isVector"},        {"--space", "space"},         {"--field", "field"},
+    {"--normalize", "isNormalized"}, {"--noise-octaves", "noise"}, {"--noise-frequency", "noise"},
+    {"--noise-gain", "noise"},       {"--noise-seed", "noise"},    {"--noise-ramp", "noiseRamp"}};
+
+/// Refuses flags that would change nothing.
+void RefuseWithoutEffect(CLI::App const& verb, std::vector<std::string> const& maps) {
+    if (!std::ranges::all_of(maps, engine::IsMapName)) return;  // that is the error to tell
+    auto const isBaked = [&](std::string const& map) {
+        return std::ranges::find(maps, map) != maps.end();
+    };
+    for (auto const& [flag, member] : kMapFlags) {
+        auto const takers = engine::ListMapsThatTake(member);
+        if (verb.count(flag) == 0 || std::ranges::any_of(takers, isBaked)) continue;
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("{} has no effect on {}; it is for {}", flag, fmt::join(maps, ", "),
+                                fmt::join(takers, ", ")));
+    }
+    if (!isBaked("field")) {
+        if (verb.count("--vector") == 0) RefuseEach(verb, {"--space"}, "needs --vector");
+        if (verb.count("--noise-ramp"))
+            RefuseEach(verb, {"--normalize"}, "has no effect with --noise-ramp");
+    }
+    if (verb.count("--preview") == 0)
+        RefuseEach(verb, {"--preview-range", "--preview-legend"}, "needs --preview");
+    if (verb.count("--audit") == 0)
+        RefuseEach(verb, {"--audit-bound", "--seam-bound"}, "needs --audit");
+}
+
 engine::BakeOptions MakeOptions(BakeArguments const& a, CommonOptions const& common) {
     engine::BakeOptions options = a.options;
     if (!a.encode.empty()) options.encoding = ParseEncoding(a.encode);
     if (!a.noiseRamp.empty()) options.noiseRamp = engine::ColourRamp::Parse(a.noiseRamp);
+    if (!a.previewRange.empty()) options.previewRange = engine::PreviewRange::Parse(a.previewRange);
+    ParseHalf(a.half, options);
     ParseSize(a.size, options);
     ParseTiles(a.tiles, options);
     options.compression = engine::kExrCompressionWords.Parse(a.compression);
@@ -103,8 +180,17 @@ void AddToReport(nlohmann::json& report, engine::BakeReport const& bake) {
             entry["min"] = output.min;
             entry["max"] = output.max;
         }
+        if (output.leftOut.count > 0) {
+            entry["tangential_rms"] = output.leftOut.GetRms();
+            entry["tangential_max"] = output.leftOut.max;
+        }
         report["outputs"].push_back(std::move(entry));
     }
+}
+
+/// JSON has no "none" for numbers but null.
+nlohmann::json OrNull(std::optional<double> const& value) {
+    return value ? nlohmann::json(*value) : nlohmann::json();
 }
 
 nlohmann::json ToJson(engine::AuditReport const& audit, engine::BakeReport const& bake) {
@@ -115,7 +201,9 @@ nlohmann::json ToJson(engine::AuditReport const& audit, engine::BakeReport const
                          {"samples", seam.samples},
                          {"max", seam.max},
                          {"p99", seam.p99},
-                         {"place", seam.place}});
+                         {"place", seam.place},
+                         {"bound", OrNull(seam.bound)},
+                         {"within", seam.isWithin}});
         if (seam.max >= worst.max) worst = seam;
     }
     for (auto const& c : audit.gaussBonnet) {
@@ -138,53 +226,117 @@ nlohmann::json ToJson(engine::AuditReport const& audit, engine::BakeReport const
             {"gauss_bonnet", components}};
 }
 
-int Run(BakeArguments const& a, Context& context) {
-    engine::BakeOptions options = MakeOptions(a, context.GetCommon());
+/// One bake of the run; with the mesh, where making the bake has taken one.
+struct Bake {
+    std::string mesh;
+    std::optional<engine::Model> model;
+    engine::BakeOptions options;
+};
+
+/// The bakes of a run, none of which is in the way of another, or of what the run reads.
+std::vector<Bake> PlanBakes(BakeArguments const& a, engine::BakeOptions const& options,
+                            Context& context) {
+    std::vector<Bake> bakes;
+    engine::OutputNames names;
+    for (std::string const& path : a.meshes) {
+        std::vector<engine::BakeOptions> ofMesh{options};
+        std::optional<engine::Model> model;
+        if (engine::HasGroupToken(options.pattern)) {
+            model = context.Load(path);
+            ofMesh = engine::SplitByGroup(*model, options, context.GetJob());
+        }
+        for (engine::BakeOptions& own : ofMesh) {
+            names.Add(own, std::filesystem::path(path).stem().string(), path);
+            bakes.push_back({path, model, std::move(own)});
+        }
+    }
+    for (std::string const& path : a.meshes) names.Refuse(path, "an input");
+    for (std::string const& path : {a.against, a.rest, a.fieldPath}) {
+        if (!path.empty()) names.Refuse(path, "an input");
+    }
+    std::string const& report = context.GetCommon().reportPath;
+    if (!report.empty() && report != "-") names.Refuse(report, "the report");
+    return bakes;
+}
+
+/// Adds what belongs to the mesh's own bake, bakes, and audits. Returns the bounds missed, in
+/// words.
+std::vector<std::string> RunBake(BakeArguments const& a, Bake& bake,
+                                 engine::AuditBounds const& bounds, Context& context) {
+    auto const model = bake.model ? *bake.model : context.Load(bake.mesh);
+    engine::BakeOptions& options = bake.options;
+    if (!a.fieldPath.empty()) {
+        options.field = {engine::ReadEdgeValues(a.fieldPath, model.GetLevel()),
+                         engine::Sha256OfFile(a.fieldPath)};
+    }
+    if (!a.against.empty()) options.against = context.Load(a.against);
+    if (!a.rest.empty()) options.rest = context.Load(a.rest);
+    auto const report = engine::Bake(model, options, context.GetJob());
+    AddToReport(context.GetReport(), report);
+    if (!a.hasAudit || report.outputs.empty()) return {};
+    auto const audit = engine::Audit(model, options, report, bounds, context.GetJob());
+    nlohmann::json json = ToJson(audit, report);
+    if (!context.GetReport().contains("audit")) context.GetReport()["audit"] = json;
+    json["mesh"] = bake.mesh;
+    if (!options.group.empty()) json["group"] = options.group;
+    context.GetReport()["audits"].push_back(std::move(json));
+    return audit.misses;
+}
+
+int Run(BakeArguments const& a, CLI::App const& verb, Context& context) {
+    engine::CheckTokens(a.options.pattern);
+    engine::RequireExrEnding(a.options.pattern);
+    RefuseWithoutEffect(verb, a.options.maps);
+    engine::BakeOptions const options = MakeOptions(a, context.GetCommon());
+    engine::AuditBounds const bounds = ParseBounds(a);
     if (a.meshes.size() > 1 && a.options.pattern.find("{mesh}") == std::string::npos) {
         throw Error(ErrorCode::BadOption, "-o: several meshes need {mesh} in the output's name");
     }
-    if (a.options.maps.size() > 1 && a.options.pattern.find("{map}") == std::string::npos) {
+    std::vector<Bake> bakes = PlanBakes(a, options, context);
+    if (a.options.maps.size() > 1 && !engine::HasMapToken(a.options.pattern)) {
         context.GetJob().Warn(
             "the output's name has no {map}: all maps go into one file with a layer each");
     }
-    int status = kDone;
-    for (std::string const& path : a.meshes) {
-        auto const model = context.Load(path);
-        if (!a.fieldPath.empty()) {
-            options.field = {engine::ReadEdgeValues(a.fieldPath, model.GetLevel()),
-                             engine::Sha256OfFile(a.fieldPath)};
-        }
-        if (!a.against.empty()) {
-            options.against = context.Load(a.against);
-        }
-        if (!a.rest.empty()) options.rest = context.Load(a.rest);
-        auto const report = engine::Bake(model, options, context.GetJob());
-        AddToReport(context.GetReport(), report);
-        if (!a.hasAudit) continue;
-        auto const audit = engine::Audit(model, options, report, a.auditBound, context.GetJob());
-        context.GetReport()["audit"] = ToJson(audit, report);
-        if (audit.isWithin) continue;
-        context.GetJob().Warn(fmt::format(
-            "{}: the Gauss-Bonnet audit misses its bound {}; the files stay", path, a.auditBound));
-        status = kNotReached;
+    std::vector<std::string> misses;
+    for (Bake& bake : bakes) {
+        auto const own = RunBake(a, bake, bounds, context);
+        misses.insert(misses.end(), own.begin(), own.end());
+        bake.model.reset();
     }
-    return status;
+    if (!context.GetReport().contains("outputs")) {
+        throw Error(ErrorCode::BadMesh, "no texel is covered by any group in the tiles asked for");
+    }
+    if (misses.empty()) return kDone;
+    for (size_t i = 1; i < misses.size(); ++i) context.GetJob().Warn(misses[i]);
+    std::string const more =
+        misses.size() > 1 ? fmt::format(" ({} more, see the warnings)", misses.size() - 1) : "";
+    return context.MissTarget(NameFlags(misses[0]) + more + "; the files stay");
 }
 
 /// What the files hold.
 void AddFileOptions(CLI::App& verb, BakeArguments& a) {
     verb.add_option("--size", a.size, "texels: N or WxH (default 2048)");
-    verb.add_option("--tiles", a.tiles, "UDIM tiles, e.g. 1001,1003-1005 (default all)")
+    verb.add_option("--tiles", a.tiles,
+                    "UDIM tiles, e.g. 1001,1003-1005 (default all, if at most 100)")
         ->delimiter(',');
     verb.add_option("--samples", a.options.samplesPerSide, "N x N samples per texel (default 1)")
         ->check(CLI::Range(1, 16));
     verb.add_option("--padding", a.options.padding, "texels grown round the charts (default 16)")
         ->check(CLI::Range(0, 4096));
-    verb.add_flag("--half", a.options.isHalf, "16-bit floats (default 32-bit)");
+    verb.add_flag("--half{" + std::string(kAllMaps) + "}", a.half,
+                  "16-bit floats (default 32-bit); --half=normal,mean: of these maps only");
     verb.add_option("--compression", a.compression, "zip (default), zips, piz, rle, none or dwaa");
     verb.add_flag("--mip", a.options.hasMips, "mip levels, for renderers");
     verb.add_flag("--coverage", a.options.hasCoverage, "add a channel 'coverage'");
-    verb.add_flag("--preview", a.options.hasPreview, "also a PNG to look at");
+    verb.add_flag("--preview", a.options.hasPreview,
+                  "also a PNG to look at, a pixel per texel, padding included");
+    verb.add_flag(
+        "--preview-legend", a.options.hasPreviewLegend,
+        "and beside it NAME.legend.png: map, mesh, unit, and which colour is which value");
+    verb.add_option(
+        "--preview-range", a.previewRange,
+        "A,B; p1 (1st to 99th percentile, the default of scalars); full; asinh "
+        "(linear up to the median, logarithmic beyond); signed maps are 0 in the middle");
     verb.add_option("--encode", a.encode, "S,O: write value * S + O");
 }
 
@@ -195,7 +347,10 @@ void AddMapOptions(CLI::App& verb, BakeArguments& a) {
     verb.add_option("--bands", a.options.bands,
                     "of the map bands: frequency bands, their smooth base included (default 4)")
         ->check(CLI::Range(1, 64));
-    verb.add_flag("--vector", a.options.isVector, "displacement and bands as vectors");
+    verb.add_flag(
+        "--vector", a.options.isVector,
+        "displacement and bands as whole vectors (default: only their part along the "
+        "normal; the report has tangential_rms and tangential_max, what that leaves out)");
     AddWordOption(verb, "--space", a.options.space, kVectorSpaceWords,
                   "object (default) or tangent, of vectors; uv: of the map field, flow in "
                   "texture coordinates");
@@ -231,7 +386,8 @@ Verb AddBake(CLI::App& app) {
     verb->add_option("MESH", a->meshes, "OBJ, PLY or OFF; several with {mesh} in the output's name")
         ->required();
     verb->add_option("-o,--output", a->options.pattern,
-                     "output path with {map}, {mesh}, <UDIM> or {udim}")
+                     "output path, .exr, with {map}, {mesh}, {group} (a bake per group), <UDIM> or "
+                     "{udim}; also <udim>, %(UDIM)d, <UVTILE> (u1_v1), <uvtile> (u0_v0)")
         ->required();
     verb->add_option("--maps", a->options.maps, "comma-separated: " + engine::ListMapNames())
         ->delimiter(',')
@@ -243,8 +399,13 @@ Verb AddBake(CLI::App& app) {
                    "noise from 0 to 1 over the whole surface; fields of length 1");
     verb->add_flag("--audit", a->hasAudit,
                    "check seams, coverage and Gauss-Bonnet, and report them");
-    verb->add_option("--audit-bound", a->auditBound,
+    verb->add_option("--audit-bound", a->bounds.gaussBonnet,
                      "of the Gauss-Bonnet error (default 1e-3); missed: exit status 4");
+    verb->add_option("--seam-bound", a->seamBounds,
+                     "X or MAP=X: of the largest difference along seams, in map units (default: "
+                     "not judged); may be repeated")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     verb->add_option("--groups", a->options.groups, "only faces of these usemtl, g or o groups")
         ->delimiter(',');
     verb->add_flag("--skip-existing", a->options.skipsExisting,
@@ -253,7 +414,7 @@ Verb AddBake(CLI::App& app) {
         "Example:\n  limn bake scenes/spot/spot.obj -o 'out/spot.{map}.<UDIM>.exr' --maps "
         "mean,normal --size 2048 "
         "--preview");
-    return {verb, [a](Context& context) { return Run(*a, context); }};
+    return {verb, [a, verb](Context& context) { return Run(*a, *verb, context); }};
 }
 
 }  // namespace limn::cli

@@ -43,6 +43,7 @@ nlohmann::json ToJson(engine::MeshInfo const& info, engine::Model const& model) 
               {"overlap_faces", info.uv.overlapFaces},
               {"flipped_faces", info.uv.flippedFaces},
               {"zero_area_faces", info.uv.zeroAreaFaces},
+              {"faces_without", info.uv.bareFaces},
               {"out_of_range_faces", info.uv.outOfRangeFaces}}},
             {"options",
              {{"scheme", engine::kSchemeWords.GetWord(cage.scheme)},
@@ -52,6 +53,14 @@ nlohmann::json ToJson(engine::MeshInfo const& info, engine::Model const& model) 
               {"triangles", engine::kTriangleWords.GetWord(options.GetTriangleSubdivision())}}},
             {"weld", DescribeWeld(model)},
             {"defects", defects}};
+}
+
+/// "1001, 1002", and no more than a line of them.
+std::string ListTiles(std::vector<int> const& tiles) {
+    constexpr size_t kMost = 20;
+    if (tiles.size() <= kMost) return fmt::format("{}", fmt::join(tiles, ", "));
+    return fmt::format("{} and {} more", fmt::join(tiles.begin(), tiles.begin() + kMost, ", "),
+                       tiles.size() - kMost);
 }
 
 std::string ToText(engine::Model const& model, engine::MeshInfo const& info) {
@@ -86,9 +95,10 @@ std::string ToText(engine::Model const& model, engine::MeshInfo const& info) {
     } else {
         line("UVs",
              fmt::format(
-                 "tiles {}; faces: {} overlapping, {} flipped, {} without area, {} out of range",
-                 fmt::join(info.uv.tiles, ", "), info.uv.overlapFaces, info.uv.flippedFaces,
-                 info.uv.zeroAreaFaces, info.uv.outOfRangeFaces));
+                 "tiles {}; faces: {} overlapping, {} flipped, {} without area, {} out of range, "
+                 "{} without UVs",
+                 ListTiles(info.uv.tiles), info.uv.overlapFaces, info.uv.flippedFaces,
+                 info.uv.zeroAreaFaces, info.uv.outOfRangeFaces, info.uv.bareFaces));
     }
     if (auto const& weld = model.GetWeld()) {
         line("weld", fmt::format("within {}: {} vertices joined to others, {} left apart",

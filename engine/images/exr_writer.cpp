@@ -21,6 +21,12 @@
 
 namespace limn::engine {
 
+size_t ExrSpec::GetWordsPerTexel() const {
+    size_t words = 0;
+    for (size_t channel = 0; channel < channels.size(); ++channel) words += IsHalf(channel) ? 1 : 2;
+    return words;
+}
+
 int ExrSpec::GetNumLevels() const {
     int levels = 1;
     for (int size = std::max(width, height); hasMips && size > 1; size /= 2) ++levels;
@@ -106,7 +112,7 @@ struct ExrWriter::CoreBackend : ExrWriter::Backend {
                                       EXR_TILE_ROUND_DOWN));
         for (int channel : sorted) {
             Check(exr_add_channel(context, part, spec.channels[channel].c_str(),
-                                  spec.isHalf ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT,
+                                  spec.IsHalf(channel) ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT,
                                   EXR_PERCEPTUALLY_LINEAR, 1, 1));
         }
         for (auto const& [name, value] : spec.attributes) {
@@ -149,14 +155,18 @@ struct ExrWriter::LibraryBackend : ExrWriter::Backend {
         header.setTileDescription({ExrSpec::kTileSize, ExrSpec::kTileSize,
                                    spec.hasMips ? Imf::MIPMAP_LEVELS : Imf::ONE_LEVEL,
                                    Imf::ROUND_DOWN});
-        for (std::string const& name : spec.channels) {
-            header.channels().insert(
-                name, Imf::Channel(spec.isHalf ? Imf::HALF : Imf::FLOAT, 1, 1, true));
+        for (size_t channel = 0; channel < spec.channels.size(); ++channel) {
+            header.channels().insert(spec.channels[channel],
+                                     Imf::Channel(GetType(channel), 1, 1, true));
         }
         for (auto const& [name, value] : spec.attributes) {
             header.insert(name, Imf::StringAttribute(value));
         }
         Guard([&] { file = std::make_unique<Imf::TiledOutputFile>(temporary.c_str(), header, 0); });
+    }
+
+    Imf::PixelType GetType(size_t channel) const {
+        return spec.IsHalf(channel) ? Imf::HALF : Imf::FLOAT;
     }
 
     template <class Action>
@@ -171,16 +181,17 @@ struct ExrWriter::LibraryBackend : ExrWriter::Backend {
     void Write(ExrTile const& tile) override {
         int const T = ExrSpec::kTileSize;
         int const width = std::min(T, spec.GetLevelWidth(tile.level) - tile.x * T);
-        size_t const pixel = spec.isHalf ? 2 : 4, row = pixel * static_cast<size_t>(width);
-        size_t const line = row * spec.channels.size();
-        // OpenEXR counts from the level's first texel.
-        auto* const base = const_cast<char*>(reinterpret_cast<char const*>(tile.bytes.data())) -
-                           static_cast<ptrdiff_t>(tile.x) * T * static_cast<ptrdiff_t>(pixel) -
-                           static_cast<ptrdiff_t>(tile.y) * T * static_cast<ptrdiff_t>(line);
+        size_t const line = 2 * spec.GetWordsPerTexel() * static_cast<size_t>(width);
+        char* row = const_cast<char*>(reinterpret_cast<char const*>(tile.bytes.data()));
         Imf::FrameBuffer buffer;
-        for (size_t i = 0; i < sorted.size(); ++i) {
-            buffer.insert(spec.channels[sorted[i]], Imf::Slice(spec.isHalf ? Imf::HALF : Imf::FLOAT,
-                                                               base + i * row, pixel, line));
+        for (int channel : sorted) {
+            size_t const pixel = spec.IsHalf(channel) ? 2 : 4;
+            // OpenEXR counts from the level's first texel.
+            char* const base = row -
+                               static_cast<ptrdiff_t>(tile.x) * T * static_cast<ptrdiff_t>(pixel) -
+                               static_cast<ptrdiff_t>(tile.y) * T * static_cast<ptrdiff_t>(line);
+            buffer.insert(spec.channels[channel], Imf::Slice(GetType(channel), base, pixel, line));
+            row += pixel * static_cast<size_t>(width);
         }
         Guard([&] {
             file->setFrameBuffer(buffer);
@@ -216,8 +227,8 @@ ExrTile ExrWriter::Pack(int level, int x, int y, float const* const* planes, siz
     int const T = ExrSpec::kTileSize;
     int const width = std::min(T, _spec.GetLevelWidth(level) - x * T);
     int const height = std::min(T, _spec.GetLevelHeight(level) - y * T);
-    size_t const numPixels = static_cast<size_t>(width) * height * _spec.channels.size();
-    size_t const numWords = numPixels * (_spec.isHalf ? 1 : 2), numBytes = 2 * numWords;
+    size_t const numWords = _spec.GetWordsPerTexel() * static_cast<size_t>(width) * height,
+                 numBytes = 2 * numWords;
 
     thread_local Scratch scratch;
     scratch.words.resize(numWords);
@@ -228,7 +239,7 @@ ExrTile ExrWriter::Pack(int level, int x, int y, float const* const* planes, siz
     uint16_t* to = scratch.words.data();
     PixelKernel const& kernel = eval::GetKernel<PixelKernel>();
     for (int channel : _sortedChannels) {
-        if (_spec.isHalf) {
+        if (_spec.IsHalf(channel)) {
             tile.numClamped += kernel.convertToHalf(planes[channel], stride, to, wordsPerRow, w, h);
             to += w;
         } else {

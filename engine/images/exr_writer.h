@@ -17,13 +17,16 @@ enum class ExrCompression { None, Rle, Zips, Zip, Piz, Dwaa };
 
 struct ExrSpec {
     int width = 0, height = 0;
-    bool isHalf = false;
     bool hasMips = false;
     ExrCompression compression = ExrCompression::Zip;
     std::vector<std::string> channels;  ///< in the order of the planes given to Pack
+    std::vector<char> isHalf;           ///< per channel: 16 bits, not 32; empty for none
     std::vector<std::pair<std::string, std::string>> attributes;
 
     static constexpr int kTileSize = 64;
+
+    bool IsHalf(size_t channel) const { return !isHalf.empty() && isHalf[channel]; }
+    size_t GetWordsPerTexel() const;  ///< of 16 bits, all channels
 
     int GetNumLevels() const;  ///< 1 without mips; ROUND_DOWN otherwise
     int GetLevelWidth(int level) const;

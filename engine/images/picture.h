@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -8,6 +9,11 @@
 #include "engine/images/colours.h"
 
 namespace limn::engine {
+
+/// Every channel of what is nothing in particular.
+inline constexpr uint8_t kPictureBackground = 38;
+
+std::array<uint8_t, 3> ToBytes(Colour const& colour);
 
 /// An RGB picture, 8 bits a channel, rows from the top.
 class Picture {
@@ -22,7 +28,7 @@ public:
     void Set(int x, int y, Colour const& colour);  ///< nothing outside the picture
     void SetGrey(size_t pixel, uint8_t grey);      ///< pixel = y * width + x
 
-    /// Writes digits and the few letters that numbers need, white, 14 pixels high.
+    /// Writes ASCII text, white, 14 pixels high.
     void Write(int x, int y, std::string const& text);
     static int GetTextWidth(std::string const& text) { return 12 * static_cast<int>(text.size()); }
 

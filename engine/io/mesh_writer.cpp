@@ -44,7 +44,7 @@ public:
 
     std::string Make() {
         AppendVertices();
-        AppendRows("vt", _scene.uvs, 2);
+        AppendUVs();
         AppendRows("vn", _scene.normals, 3);
         AppendFaces();
         AppendTags();
@@ -81,6 +81,28 @@ private:
         }
     }
 
+    /// The values that faces use, without what stands for none.
+    void AppendUVs() {
+        if (_scene.lacksUVs.empty()) return AppendRows("vt", _scene.uvs, 2);
+        auto const& cage = _scene.cage;
+        std::vector<double> uvs;
+        _uvNumbers.assign(_scene.uvs.size() / 2, 0);
+        size_t corner = 0;
+        for (Index face = 0; face < cage.GetNumFaces(); ++face) {
+            for (int i = 0; i < cage.faceSizes[face]; ++i, ++corner) {
+                Index const value = cage.fvarChannels[0].valueIndices[corner];
+                if (!_scene.HasUVs(face) || _uvNumbers[value] != 0) continue;
+                uvs.insert(uvs.end(), {_scene.uvs[2 * value], _scene.uvs[2 * value + 1]});
+                _uvNumbers[value] = static_cast<Index>(uvs.size() / 2);
+            }
+        }
+        AppendRows("vt", uvs, 2);
+    }
+
+    Index GetUVNumber(Index value) const {
+        return _uvNumbers.empty() ? value + 1 : _uvNumbers[value];
+    }
+
     void AppendFaces() {
         auto const& cage = _scene.cage;
         Index current[3] = {-1, -1, -1};
@@ -97,13 +119,13 @@ private:
             _text.push_back('f');
             for (int i = 0; i < cage.faceSizes[face]; ++i, ++corner) {
                 fmt::format_to(std::back_inserter(_text), " {}", cage.faceVertices[corner] + 1);
-                if (_scene.HasUVs()) {
+                if (_scene.HasUVs(face)) {
                     fmt::format_to(std::back_inserter(_text), "/{}",
-                                   cage.fvarChannels[0].valueIndices[corner] + 1);
+                                   GetUVNumber(cage.fvarChannels[0].valueIndices[corner]));
                 }
                 if (!_scene.normals.empty()) {
-                    fmt::format_to(std::back_inserter(_text), "{}/{}", _scene.HasUVs() ? "" : "/",
-                                   cage.faceVertices[corner] + 1);
+                    fmt::format_to(std::back_inserter(_text), "{}/{}",
+                                   _scene.HasUVs(face) ? "" : "/", cage.faceVertices[corner] + 1);
                 }
             }
             _text.push_back('\n');
@@ -138,6 +160,7 @@ private:
 
     Scene const& _scene;
     Precision _precision;
+    std::vector<Index> _uvNumbers;  // from 1, per value; empty where the values keep their order
     fmt::memory_buffer _text;
 };
 
@@ -157,13 +180,15 @@ public:
             }
         }
         size_t corner = 0;
-        for (int size : _scene.cage.faceSizes) {
+        for (Index face = 0; face < _scene.cage.GetNumFaces(); ++face) {
+            int const size = _scene.cage.faceSizes[face];
             AppendRaw(static_cast<int32_t>(size));
             for (int i = 0; i < size; ++i)
                 AppendRaw(static_cast<int32_t>(_scene.cage.faceVertices[corner + i]));
             if (_scene.HasUVs()) {
-                AppendRaw(static_cast<int32_t>(2 * size));
-                for (int i = 0; i < size; ++i) {
+                int const numWithUVs = _scene.HasUVs(face) ? size : 0;
+                AppendRaw(static_cast<int32_t>(2 * numWithUVs));
+                for (int i = 0; i < numWithUVs; ++i) {
                     Index const value = _scene.cage.fvarChannels[0].valueIndices[corner + i];
                     AppendReal(_scene.uvs[2 * static_cast<size_t>(value)]);
                     AppendReal(_scene.uvs[2 * static_cast<size_t>(value) + 1]);

@@ -183,8 +183,7 @@ private:
                 fmt::format("{} of a face's {} corners have a texture index; all or none must",
                             numWithUV, size));
         }
-        (numWithUV ? _numFacesWithUV : _numFacesWithoutUV) += 1;
-        if (!numWithUV && _firstLineWithoutUV == 0) _firstLineWithoutUV = _scan.GetLineNumber();
+        _hasUVs |= numWithUV > 0;
         cage.faceSizes.push_back(size);
         _scene.faceLines.push_back(_scan.GetLineNumber());
         AddToGroups();
@@ -289,17 +288,14 @@ private:
     }
 
     void FinishUVs() {
-        if (_numFacesWithUV > 0 && _numFacesWithoutUV == 0) {
-            _scene.cage.fvarChannels.push_back({NumUVs(), std::move(_faceUVs)});
-            return;
+        if (!_hasUVs) return _scene.uvs.clear();
+        std::vector<char> lacksUVs;
+        size_t corner = 0;
+        for (int size : _scene.cage.faceSizes) {
+            lacksUVs.push_back(_faceUVs[corner] < 0);
+            corner += static_cast<size_t>(size);
         }
-        _scene.uvs.clear();
-        if (_numFacesWithUV == 0) return;
-        Warn(_firstLineWithoutUV,
-             fmt::format(
-                 "{} of {} faces have no texture indices, so the mesh has no UVs; give every "
-                 "face some or none",
-                 _numFacesWithoutUV, _scene.cage.faceSizes.size()));
+        _scene.AddUVChannel(std::move(_faceUVs), std::move(lacksUVs));
     }
 
     void CheckNotCutShort() {
@@ -325,8 +321,7 @@ private:
     uint32_t _firstUnclearPosition = 0;
     std::array<std::unordered_map<std::string, Index>, 3> _groupIndex;
     std::array<Index, 3> _currentGroup{-1, -1, -1};
-    size_t _numFacesWithUV = 0, _numFacesWithoutUV = 0;
-    uint32_t _firstLineWithoutUV = 0;
+    bool _hasUVs = false;
 };
 
 }  // namespace

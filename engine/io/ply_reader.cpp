@@ -285,10 +285,8 @@ private:
 
     /// Corner coordinates become values, one for each distinct (vertex, u, v).
     void AddTexcoords(std::vector<double> const& texcoords, size_t size) {
-        if (texcoords.empty()) {
-            ++_numFacesWithoutUVs;
-            return;
-        }
+        _lacksUVs.push_back(texcoords.empty());
+        if (texcoords.empty()) return;
         if (texcoords.size() != 2 * size) {
             _values.Refuse(fmt::format("list 'texcoord' has {} numbers; {} are needed",
                                        texcoords.size(), 2 * size));
@@ -336,7 +334,7 @@ private:
         if (a == b || b == c || c == a) return;
         _scene.cage.faceVertices.insert(_scene.cage.faceVertices.end(), {a, b, c});
         AddFace(3);
-        ++_numFacesWithoutUVs;
+        _lacksUVs.push_back(1);
     }
 
     // -------- the whole
@@ -348,12 +346,14 @@ private:
                         fmt::format("{}: the file has no faces; limn needs polygons", _scene.path));
         }
         FinishMaterials();
-        if (!_cornerUVs.empty() && _numFacesWithoutUVs != 0) {
+        auto const numBare = std::ranges::count(_lacksUVs, 1);
+        bool const hasCornerUVs = static_cast<size_t>(numBare) < _lacksUVs.size();
+        if (hasCornerUVs && numBare != 0 && _hasVertexUVs) {
             _scene.warnings.push_back(fmt::format(
-                "{}: {} of {} faces have no 'texcoord', so those of the others are not used",
-                _scene.path, _numFacesWithoutUVs, cage.faceSizes.size()));
+                "{}: {} of {} faces have no 'texcoord', so those of the vertices are used",
+                _scene.path, numBare, cage.faceSizes.size()));
         }
-        if (!_cornerUVs.empty() && _numFacesWithoutUVs == 0) {
+        if (hasCornerUVs && (numBare == 0 || !_hasVertexUVs)) {
             MergeCornerUVs();
         } else if (_hasVertexUVs) {
             cage.fvarChannels.push_back({cage.numVertices, cage.faceVertices});
@@ -368,30 +368,35 @@ private:
 
     void MergeCornerUVs() {
         auto& cage = _scene.cage;
-        std::vector<Index> order(cage.faceVertices.size());
+        std::vector<Index> corners;  // those with UVs
+        Index next = 0;
+        for (size_t face = 0; face < cage.faceSizes.size(); ++face) {
+            for (int k = 0; k < cage.faceSizes[face]; ++k, ++next) {
+                if (!_lacksUVs[face]) corners.push_back(next);
+            }
+        }
+        std::vector<Index> order(corners.size());
         for (size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Index>(i);
-        auto const key = [&](Index corner) {
-            return std::tuple(cage.faceVertices[corner], _cornerUVs[2 * corner],
-                              _cornerUVs[2 * corner + 1], corner);
+        auto const key = [&](Index i) {
+            return std::tuple(cage.faceVertices[corners[i]], _cornerUVs[2 * i],
+                              _cornerUVs[2 * i + 1], i);
         };
         std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) < key(b); });
-        far_ext::FVarChannel channel;
-        channel.valueIndices.resize(order.size());
+        std::vector<Index> values(cage.faceVertices.size(), -1);
         _scene.uvs.clear();
         for (size_t i = 0; i < order.size(); ++i) {
             auto const same = [&](Index a, Index b) {
-                return cage.faceVertices[a] == cage.faceVertices[b] &&
+                return cage.faceVertices[corners[a]] == cage.faceVertices[corners[b]] &&
                        _cornerUVs[2 * a] == _cornerUVs[2 * b] &&
                        _cornerUVs[2 * a + 1] == _cornerUVs[2 * b + 1];
             };
             if (i == 0 || !same(order[i - 1], order[i])) {
                 _scene.uvs.push_back(_cornerUVs[2 * order[i]]);
                 _scene.uvs.push_back(_cornerUVs[2 * order[i] + 1]);
-                ++channel.numValues;
             }
-            channel.valueIndices[order[i]] = channel.numValues - 1;
+            values[corners[order[i]]] = static_cast<Index>(_scene.uvs.size() / 2) - 1;
         }
-        cage.fvarChannels.push_back(std::move(channel));
+        _scene.AddUVChannel(std::move(values), std::move(_lacksUVs));
     }
 
     Scene& _scene;
@@ -399,8 +404,8 @@ private:
     PlyHeader _header;
     PlyValues _values;
     bool _hasVertexUVs = false;
-    size_t _numFacesWithoutUVs = 0;
-    std::vector<double> _cornerUVs;
+    std::vector<double> _cornerUVs;  // 2 per corner of the faces that have some
+    std::vector<char> _lacksUVs;     // per face
     std::unordered_map<Index, Index> _materialOfTexture;
 };
 

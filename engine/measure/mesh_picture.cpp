@@ -9,7 +9,7 @@
 #include <Eigen/Dense>
 #include <fmt/format.h>
 
-#include "engine/bake/preview.h"
+#include "engine/images/colour_scale.h"
 #include "eval/differential/dirmag.h"
 #include "far_ext/error.h"
 #include "far_ext/rows/points.h"
@@ -20,6 +20,15 @@ namespace limn::engine {
 namespace {
 
 using Vector = Eigen::Vector3d;
+
+/// The value that a share of them does not pass; reorders them.
+float FindQuantile(std::vector<float>& values, double share) {
+    if (values.empty()) return 0.0f;
+    auto const at =
+        values.begin() + static_cast<ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
 
 /// An orthographic picture of a mesh: which value is seen in each pixel.
 class MeshPicture {
@@ -51,14 +60,16 @@ public:
     }
 
     Picture MakeColoured(bool isSigned) const {
-        PreviewBuilder preview(isSigned ? RangeKind::Signed : RangeKind::Positive, 1, 0, _size,
-                               _size);
-        std::vector<uint8_t> const isFilled(static_cast<size_t>(_size), 1);
-        for (int row = 0; row < _size; ++row) {
-            size_t const first = static_cast<size_t>(row) * static_cast<size_t>(_size);
-            preview.Add(row, {&_values[first], NumPixels(), &_coverage[first], isFilled.data()});
+        ColourScale const scale = FindScale(isSigned);
+        Picture picture(std::max(_size, 128), _size + ColourScale::kBarHeight);
+        for (int y = 0; y < _size; ++y) {
+            for (int x = 0; x < _size; ++x) {
+                if (_coverage[At(x, y)] > 0.0f)
+                    picture.Set(x, y, scale.ToColour(_values[At(x, y)]));
+            }
         }
-        return preview.Draw();
+        scale.DrawBar(_size, picture);
+        return picture;
     }
 
     /// Draws an arrow round each of some vertices that are seen, no two nearer than `spacing`
@@ -103,6 +114,18 @@ public:
     Vector GetUp() const { return _up; }
 
 private:
+    /// Leaves out a few extremes, which would hide the rest.
+    ColourScale FindScale(bool isSigned) const {
+        std::vector<float> values;
+        for (size_t pixel = 0; pixel < NumPixels(); ++pixel) {
+            if (!(_coverage[pixel] > 0.0f)) continue;
+            values.push_back(isSigned ? std::abs(_values[pixel]) : _values[pixel]);
+        }
+        ColourScale scale{.isSigned = isSigned, .high = FindQuantile(values, 0.98)};
+        scale.low = isSigned ? -scale.high : FindQuantile(values, 0.02);
+        return scale;
+    }
+
     size_t NumPixels() const { return static_cast<size_t>(_size) * static_cast<size_t>(_size); }
     Vector PointOf(Index vertex) const { return far_ext::Points(_scene.positions)[vertex]; }
 

@@ -45,6 +45,8 @@ public:
     far_ext::ControlMesh const& GetCage() const { return _parts->scene.cage; }
     std::vector<double> const& GetPositions() const { return _points->positions; }
     bool HasUVs() const { return _parts->scene.HasUVs(); }
+    bool HasUVs(Index face) const { return _parts->scene.HasUVs(face); }
+    std::vector<char> const& GetFacesLackingUVs() const { return _parts->scene.lacksUVs; }
     std::vector<double> const& GetUVs() const { return _parts->scene.uvs; }
     std::vector<Primvar> const& GetPrimvars() const { return _parts->scene.primvars; }
     std::array<FaceGroups, 3> const& GetGroups() const { return _parts->scene.groups; }
@@ -58,6 +60,9 @@ public:
     /// As Scene's, ListGroups and SelectGroups.
     std::string NameFace(Index face) const { return _parts->scene.NameFace(face); }
     std::vector<std::string> ListGroups() const { return engine::ListGroups(_parts->scene); }
+    std::vector<std::string> ListGroups(GroupKind kind) const {
+        return engine::ListGroups(_parts->scene, kind);
+    }
     std::vector<char> SelectGroups(std::vector<std::string> const& names) const {
         return engine::SelectGroups(_parts->scene, names);
     }

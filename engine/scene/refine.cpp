@@ -77,15 +77,17 @@ std::unique_ptr<Far::TopologyRefiner> MakeUniformRefiner(far_ext::ControlMesh co
     return refiner;
 }
 
-std::array<FaceGroups, 3> InheritGroups(std::array<FaceGroups, 3> const& groups,
-                                        std::vector<Index> const& baseFaces) {
-    std::array<FaceGroups, 3> fine;
-    for (size_t kind = 0; kind < groups.size(); ++kind) {
-        fine[kind].names = groups[kind].names;
-        if (groups[kind].faceGroup.empty()) continue;
-        for (Index face : baseFaces) fine[kind].faceGroup.push_back(groups[kind].faceGroup[face]);
+void InheritFromFaces(Model const& model, std::vector<Index> const& baseFaces, Scene& fine) {
+    for (size_t kind = 0; kind < fine.groups.size(); ++kind) {
+        FaceGroups const& groups = model.GetGroups()[kind];
+        fine.groups[kind].names = groups.names;
+        if (groups.faceGroup.empty()) continue;
+        for (Index face : baseFaces) fine.groups[kind].faceGroup.push_back(groups.faceGroup[face]);
     }
-    return fine;
+    auto const& lacksUVs = model.GetFacesLackingUVs();
+    for (Index face : baseFaces) {
+        if (!lacksUVs.empty()) fine.lacksUVs.push_back(lacksUVs[face]);
+    }
 }
 
 Scene RefineAllButPositions(Model const& model, Far::TopologyRefiner const& refiner, Job& job) {
@@ -96,8 +98,7 @@ Scene RefineAllButPositions(Model const& model, Far::TopologyRefiner const& refi
     if (model.HasUVs()) fine.uvs = RefineToLast<2>(refiner, model.GetUVs(), job, 0);
     for (Primvar const& primvar : model.GetPrimvars())
         fine.primvars.push_back(RefinePrimvar(refiner, primvar, job));
-    fine.groups =
-        InheritGroups(model.GetGroups(), far_ext::FindBaseFaces(refiner, refiner.GetMaxLevel()));
+    InheritFromFaces(model, far_ext::FindBaseFaces(refiner, refiner.GetMaxLevel()), fine);
     return fine;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <memory>
 #include <vector>
 
@@ -40,8 +39,8 @@ std::unique_ptr<Far::TopologyRefiner> MakeUniformRefiner(far_ext::ControlMesh co
 /// All of RefineUniformly's result but the positions.
 Scene RefineAllButPositions(Model const& model, Far::TopologyRefiner const& refiner, Job& job);
 
-/// Groups of refined faces: those of the base faces they lie in.
-std::array<FaceGroups, 3> InheritGroups(std::array<FaceGroups, 3> const& groups,
-                                        std::vector<Index> const& baseFaces);
+/// Gives refined faces the groups of the base faces they lie in, and leaves those without texture
+/// coordinates whose base face has none.
+void InheritFromFaces(Model const& model, std::vector<Index> const& baseFaces, Scene& fine);
 
 }  // namespace limn::engine

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/scene/scene.h"
 
+#include <algorithm>
 #include <array>
 #include <iterator>
 #include <sstream>
@@ -20,6 +21,17 @@ std::string Scene::NameFace(Index face) const {
     return fmt::format("face {}", face);
 }
 
+void Scene::AddUVChannel(std::vector<Index> values, std::vector<char> lacks) {
+    if (std::ranges::count(lacks, 1) > 0) {
+        // One value for all corners without: a chart of its own, which no seam joins to another. It
+        // lies where a value lies already, so that it enlarges no bounds and adds no tile.
+        std::ranges::replace(values, -1, static_cast<Index>(uvs.size() / 2));
+        uvs.insert(uvs.end(), {uvs[0], uvs[1]});
+        lacksUVs = std::move(lacks);
+    }
+    cage.fvarChannels.push_back({static_cast<Index>(uvs.size() / 2), std::move(values)});
+}
+
 namespace {
 
 /// The groups that one entry of Scene::groups stands for.
@@ -29,17 +41,21 @@ std::vector<std::string> SplitName(std::string const& name, GroupKind kind) {
     return {std::istream_iterator<std::string>(words), {}};
 }
 
-/// Calls visit(groups, entry, name) for each group's name, kind by kind in the order of the file.
+/// Calls visit(groups, entry, name) for each name of a kind, in the order of the file.
 template <class Visit>
-void ForEachName(Scene const& scene, Visit visit) {
-    for (GroupKind kind : {GroupKind::Material, GroupKind::Group, GroupKind::Object}) {
-        FaceGroups const& groups = scene.groups[static_cast<size_t>(kind)];
-        for (size_t entry = 0; entry < groups.names.size(); ++entry) {
-            for (std::string const& name : SplitName(groups.names[entry], kind)) {
-                visit(groups, static_cast<Index>(entry), name);
-            }
+void ForEachName(Scene const& scene, GroupKind kind, Visit visit) {
+    FaceGroups const& groups = scene.groups[static_cast<size_t>(kind)];
+    for (size_t entry = 0; entry < groups.names.size(); ++entry) {
+        for (std::string const& name : SplitName(groups.names[entry], kind)) {
+            visit(groups, static_cast<Index>(entry), name);
         }
     }
+}
+
+template <class Visit>
+void ForEachName(Scene const& scene, Visit visit) {
+    for (GroupKind kind : {GroupKind::Material, GroupKind::Group, GroupKind::Object})
+        ForEachName(scene, kind, visit);
 }
 
 }  // namespace
@@ -51,6 +67,20 @@ std::vector<std::string> ListGroups(Scene const& scene) {
         if (known.insert(name).second) all.push_back(name);
     });
     return all;
+}
+
+std::vector<std::string> ListGroups(Scene const& scene, GroupKind kind) {
+    FaceGroups const& groups = scene.groups[static_cast<size_t>(kind)];
+    std::vector<char> isUsed(groups.names.size(), 0);
+    for (Index entry : groups.faceGroup) {
+        if (entry >= 0) isUsed[entry] = 1;
+    }
+    std::vector<std::string> used;
+    std::unordered_set<std::string> known;
+    ForEachName(scene, kind, [&](FaceGroups const&, Index entry, std::string const& name) {
+        if (isUsed[entry] && known.insert(name).second) used.push_back(name);
+    });
+    return used;
 }
 
 std::vector<char> SelectGroups(Scene const& scene, std::vector<std::string> const& names) {

@@ -47,6 +47,8 @@ struct Scene {
     std::vector<double> normals;    ///< 3 per vertex, written to OBJ; empty without. Readers leave
                                     ///< them out: limits have their own
     std::vector<double> uvs;        ///< 2 per value of fvar channel 0; empty without UVs
+    std::vector<char> lacksUVs;     ///< per face: the values of its corners stand for nothing;
+                                    ///< empty where all faces have UVs, or none has
     std::array<FaceGroups, 3> groups;  ///< by GroupKind
     std::vector<Primvar> primvars;
     std::vector<uint32_t> faceLines;  ///< line of each face in a text file; empty otherwise
@@ -59,6 +61,11 @@ struct Scene {
     std::vector<std::string> warnings;  ///< what the reader remarked, one line each
 
     bool HasUVs() const { return !uvs.empty(); }
+    bool HasUVs(Index face) const { return HasUVs() && (lacksUVs.empty() || !lacksUVs[face]); }
+
+    /// Adds the channel of texture coordinates: `values` per corner, -1 at those of faces without,
+    /// of which there are some in `lacks`. \pre uvs has been filled
+    void AddUVChannel(std::vector<Index> values, std::vector<char> lacks);
 
     /// "face 12 (line 345)", or "face 12" where the file has no lines.
     std::string NameFace(Index face) const;
@@ -66,6 +73,9 @@ struct Scene {
 
 /// The names that SelectGroups takes, each once.
 std::vector<std::string> ListGroups(Scene const& scene);
+
+/// Of one kind, those that some face is in.
+std::vector<std::string> ListGroups(Scene const& scene, GroupKind kind);
 
 /// The faces of the named groups (any kind), or an error that lists what there is.
 ///

@@ -34,6 +34,9 @@ void CheckUVs(Scene const& scene) {
     size_t const numUVs = channels.empty() ? 0 : static_cast<size_t>(channels[0].numValues);
     CheckCount("texture coordinates", scene.uvs.size(), 2 * numUVs);
     CheckFinite("texture coordinate", scene.uvs, 2);
+    if (scene.lacksUVs.empty()) return;
+    CheckCount("faces without texture coordinates", scene.lacksUVs.size(),
+               scene.cage.faceSizes.size());
 }
 
 void CheckPrimvars(Scene const& scene) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace limn::engine {
 
@@ -31,11 +32,15 @@ inline std::optional<UdimTile> FindUdimTile(double u, double v) {
     return UdimTile{static_cast<int>(u), static_cast<int>(v)};
 }
 
-/// Paths name the tile by <UDIM> or {udim}.
-bool HasUdimToken(std::string const& pattern);
+/// Whether a path names its tile, by one of the spellings that ListUdimTokens lists.
+bool HasUdimToken(std::string_view pattern);
+/// The path with the tile in place of each of these. \pre number >= 1001
 std::string ReplaceUdimToken(std::string pattern, int number);
 
-/// `text` with every `token` replaced.
-std::string ReplaceAll(std::string text, std::string const& token, std::string const& value);
+/// What a token stands for in a tile; none if it is no token of UDIM. \pre number >= 1001
+std::optional<std::string> ExpandUdimToken(std::string_view token, int number);
+
+/// "<UDIM>, {udim}, ..."
+std::string ListUdimTokens();
 
 }  // namespace limn::engine

@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <set>
 #include <vector>
 
+#include "engine/scene/texture_tiles.h"
 #include "engine/scene/udim.h"
 
 namespace limn::engine {
@@ -117,8 +117,6 @@ struct Box {
     bool IsInRange() const {
         return minU >= 0.0 && maxU <= 10.0 && minV >= 0.0 && maxV <= kMaxUdimRows;
     }
-    /// That of the middle: borders belong to both sides, as do faces a hair over them.
-    UdimTile GetTile() const { return Clamp(0.5 * (minU + maxU), 0.5 * (minV + maxV)); }
     UdimTile GetFirstTile() const { return Clamp(minU, minV); }
     UdimTile GetLastTile() const { return Clamp(maxU, maxV); }
 
@@ -158,30 +156,43 @@ size_t CountOverlaps(Model const& model, FacesOfTile const& facesOfTile) {
     return overlaps.GetCount();
 }
 
+/// The tiles of faces with an area, and how many faces leave UDIM's range.
+void FindTiles(Model const& model, std::vector<char> const& isFlat, UVInfo& info) {
+    constexpr int kSize = 2048;  // as a bake has it that is not told otherwise
+    eval::LimitSurface const surface(model.GetRefiner(), 0);
+    TextureTiles tiles(surface, model.GetUVs(), kSize, kSize);
+    for (Index face = 0; face < surface.GetNumFaces(); ++face) {
+        if (!model.HasUVs(face) || !surface.HasLimit(face)) continue;
+        info.outOfRangeFaces += tiles.IsRangeLeftBy(face);
+        if (!isFlat[face]) tiles.Add(face);
+    }
+    info.tiles = tiles.ListNumbers();
+}
+
 }  // namespace
 
 UVInfo DescribeUVs(Model const& model) {
     UVInfo info;
     info.present = model.HasUVs();
     if (!info.present) return info;
-    std::set<int> tiles;
+    std::vector<char> isFlat;
     FacesOfTile facesOfTile;
     FaceCorners at{0, 0};
     for (; at.face < model.GetCage().GetNumFaces(); ++at.face) {
         auto const polygon = GetTexturePolygon(model, at);
         auto const box = FindBox(polygon);
         double const area = GetSignedArea(polygon);
-        bool const isFlat = std::abs(area) <= 1e-12;
-        info.zeroAreaFaces += isFlat;
-        info.flippedFaces += !isFlat && area < 0.0;
-        info.outOfRangeFaces += !box.IsInRange();
-        if (box.IsInRange()) {
-            tiles.insert(box.GetTile().GetNumber());
-            if (!isFlat) AddToTiles(at, box, facesOfTile);
+        isFlat.push_back(std::abs(area) <= 1e-12);
+        if (model.HasUVs(at.face)) {
+            info.zeroAreaFaces += isFlat.back();
+            info.flippedFaces += !isFlat.back() && area < 0.0;
+            if (box.IsInRange() && !isFlat.back()) AddToTiles(at, box, facesOfTile);
+        } else {
+            ++info.bareFaces;
         }
         at.first += static_cast<size_t>(model.GetCage().faceSizes[at.face]);
     }
-    info.tiles.assign(tiles.begin(), tiles.end());
+    FindTiles(model, isFlat, info);
     info.overlapFaces = CountOverlaps(model, facesOfTile);
     return info;
 }

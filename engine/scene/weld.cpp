@@ -289,11 +289,15 @@ private:
             size_t corner;
         };
         std::vector<Corner> corners;
-        for (size_t corner = 0; corner < channel.valueIndices.size(); ++corner) {
-            Index const vertex = _newOf[_scene.cage.faceVertices[corner]],
-                        value = channel.valueIndices[corner];
-            double const* const uv = &_scene.uvs[2 * static_cast<size_t>(value)];
-            if (IsJoined(vertex)) corners.push_back({vertex, uv[0], uv[1], value, corner});
+        size_t corner = 0;
+        for (Index face = 0; face < _scene.cage.GetNumFaces(); ++face) {
+            for (int i = 0; i < _scene.cage.faceSizes[face]; ++i, ++corner) {
+                Index const vertex = _newOf[_scene.cage.faceVertices[corner]],
+                            value = channel.valueIndices[corner];
+                double const* const uv = &_scene.uvs[2 * static_cast<size_t>(value)];
+                if (IsJoined(vertex) && _scene.HasUVs(face))
+                    corners.push_back({vertex, uv[0], uv[1], value, corner});
+            }
         }
         auto const place = [](Corner const& c) { return std::tie(c.vertex, c.u, c.v); };
         std::ranges::sort(corners, {}, [&](Corner const& c) {

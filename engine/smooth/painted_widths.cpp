@@ -42,14 +42,22 @@ PaintedWidths PaintedWidths::Read(std::string const& path, double white, Model c
                                 "them ('vt' in OBJ, s,t in PLY)",
                                 model.GetPath()));
     }
+    auto const& lacksUVs = model.GetFacesLackingUVs();
+    if (auto const bare = std::ranges::find(lacksUVs, 1); bare != lacksUVs.end()) {
+        throw Error(ErrorCode::BadMesh,
+                    fmt::format("{}: {} of {} faces have no texture coordinates, first {}; "
+                                "`PaintedWidths` needs them",
+                                model.GetPath(), std::ranges::count(lacksUVs, 1), lacksUVs.size(),
+                                model.NameFace(static_cast<Index>(bare - lacksUVs.begin()))));
+    }
     PaintedWidths widths;
     widths._white = white;
     widths._tileOfFace = FindTiles(model);
     bool const hasTiles = HasUdimToken(path);
     for (int number : std::set<int>(widths._tileOfFace.begin(), widths._tileOfFace.end())) {
+        if (number < 0) continue;
         std::string const file = ReplaceUdimToken(path, number);
-        bool const isWanted =
-            number >= 0 && (hasTiles ? std::filesystem::exists(file) : number == 1001);
+        bool const isWanted = hasTiles ? std::filesystem::exists(file) : number == 1001;
         if (isWanted) widths.ReadTile(file, number);
     }
     if (widths._tiles.empty()) {

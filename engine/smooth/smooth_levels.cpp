@@ -158,7 +158,7 @@ Scene SmoothLevels::MakeBisectedScene() const {
     for (size_t face = 0; face < base.size(); ++face) {
         if (isHole[base[face]]) fine.cage.holes.push_back(static_cast<Index>(face));
     }
-    fine.groups = InheritGroups(_model.GetGroups(), base);
+    InheritFromFaces(_model, base, fine);
     return fine;
 }
 

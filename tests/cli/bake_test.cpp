@@ -41,13 +41,13 @@ TEST_F(Cli, TilesAndGroupsChooseWhatIsBaked) {
     EXPECT_EQ(folder.List(), (Words{"g.1001.exr", "t.1012.exr", "two.obj"}));
 }
 
-TEST_F(Cli, WithoutUdimTokenFacesElsewhereAreNamed) {
+TEST_F(Cli, WithoutUdimTokenFacesElsewhereAreNamedAndNothingIsBaked) {
     std::string const mesh = folder.Write("two.obj", kTwoTiles);
-    Outcome const outcome =
-        Limn({"bake", mesh, "-o", folder / "{map}.exr", "--maps", "mean", "--size", "32"});
-    EXPECT_EQ(outcome.status, 0);
+    std::string const error = ExpectError(Bake(mesh, "{map}.exr"), 2, "face 1 (line 20)");
+    EXPECT_TRUE(Contains(error, "<UDIM>")) << error;
+    EXPECT_EQ(folder.List(), (Words{"two.obj"}));
+    EXPECT_EQ(Bake(mesh, "{map}.exr", {"--tiles", "1012"}).status, 0);
     EXPECT_EQ(folder.List(), (Words{"mean.exr", "two.obj"}));
-    EXPECT_TRUE(Contains(outcome.err, "face 1 (line 20)")) << outcome.err;
 }
 
 TEST_F(Cli, TileWithoutTexelsIsStatus3) {
@@ -64,37 +64,91 @@ TEST_F(Cli, SeveralMeshesAreBakedToTheirNames) {
     EXPECT_EQ(folder.List(), (Words{"catmark_cube.exr", "catmark_torus.exr"}));
 }
 
-// Texels of one value have one colour, the least and the largest differ, what is not covered is
-// dark; the legend is a strip of white figures and a ramp below.
-TEST_F(Cli, PreviewIsAPngBesideTheMap) {
-    Words const more{"--preview", "--coverage", "--padding", "0", "--maps", "gaussian"};
-    ASSERT_EQ(Bake(Shape("catmark_nonquads"), "a.exr", more).status, 0);
+// -------- previews
+
+class Previews : public Cli {
+protected:
+    std::string const mesh = Shape("catmark_nonquads");
+};
+
+// Texels of one value have one colour, the least and the largest differ, what has none is dark.
+TEST_F(Previews, HaveAPixelPerTexel) {
+    Words const more{"--preview", "--coverage",      "--padding", "2",      "--maps",
+                     "gaussian",  "--preview-range", "full",      "--size", "70x50"};
+    ASSERT_EQ(Bake(mesh, "a.exr", more).status, 0);
     auto const picture = test::ReadPng(folder / "a.png");
-    ASSERT_EQ(picture.width, 128);  // room for the legend
-    ASSERT_EQ(picture.height, 64 + 28);
+    ASSERT_EQ(picture.width, 70);
+    ASSERT_EQ(picture.height, 50);
     using Colour = test::Picture::Colour;
-    Colour const dark{38, 38, 38}, white{255, 255, 255};
+    Colour const dark{38, 38, 38};
     engine::ExrLookup lookup;
     std::map<double, Colour> colours;
-    int numDark = 0;
-    for (int y = 0; y < 64; ++y) {
-        for (int x = 0; x < 64; ++x) {
+    int numDark = 0, numPadded = 0;
+    for (int y = 0; y < 50; ++y) {
+        for (int x = 0; x < 70; ++x) {
             auto const texel = lookup.Look(folder / "a.exr", {"Y", "coverage"}, x, y);
-            bool const isCovered = texel[1] > 0.0;
-            EXPECT_EQ(picture.At(x, y) != dark, isCovered) << x << " " << y;
-            numDark += !isCovered;
-            if (!isCovered) continue;
+            bool const isDark = picture.At(x, y) == dark, isCovered = texel[1] > 0.0;
+            EXPECT_FALSE(isDark && isCovered) << x << " " << y;
+            numDark += isDark;
+            numPadded += !isDark && !isCovered;
+            if (isDark) continue;
             auto const [found, isNew] = colours.try_emplace(texel[0], picture.At(x, y));
             EXPECT_EQ(found->second, picture.At(x, y)) << x << " " << y;
         }
     }
-    EXPECT_GT(numDark, 100);
-    EXPECT_GT(picture.ListColours(0, 0, 64, 64).size(), 20u);
+    EXPECT_GT(numDark, 50);
+    EXPECT_GT(numPadded, 50);
+    EXPECT_GT(picture.ListColours(0, 0, 70, 50).size(), 20u);
     EXPECT_NE(colours.begin()->second, colours.rbegin()->second);
-    auto const legend = picture.ListColours(0, 64, 128, 28);
-    EXPECT_TRUE(legend.contains(white));
-    EXPECT_TRUE(legend.contains(dark));
-    EXPECT_GT(legend.size(), 20u);
+    EXPECT_EQ(folder.List(), (Words{"a.exr", "a.png"}));
+}
+
+TEST_F(Previews, HaveTheirLegendInAFileOfItsOwnWhereAskedFor) {
+    ASSERT_EQ(
+        Bake(mesh, "a.exr", {"--preview", "--preview-legend", "--maps", "mean,normal"}).status, 0);
+    EXPECT_EQ(folder.List(), (Words{"a.exr", "a.mean.legend.png", "a.mean.png",
+                                    "a.normal.legend.png", "a.normal.png"}));
+    auto const mean = test::ReadPng(folder / "a.mean.legend.png");
+    EXPECT_GT(mean.height, test::ReadPng(folder / "a.normal.legend.png").height);  // the bar
+    EXPECT_GT(mean.ListColours(0, 0, mean.width, mean.height).size(), 100u);
+}
+
+TEST_F(Previews, OfAFileThatIsReplacedGo) {
+    ASSERT_EQ(
+        Bake(mesh, "{map}.exr", {"--preview", "--preview-legend", "--maps", "mean,k1"}).status, 0);
+    folder.Write("k1.note.png", "not limn's");
+    ASSERT_EQ(Bake(mesh, "{map}.exr", {"--maps", "mean"}).status, 0);
+    EXPECT_EQ(folder.List(),
+              (Words{"k1.exr", "k1.legend.png", "k1.note.png", "k1.png", "mean.exr"}));
+    // Layers of a file have previews of their own, which go with the file they were made of.
+    ASSERT_EQ(Bake(mesh, "k1.exr", {"--preview", "--maps", "mean,normal"}).status, 0);
+    EXPECT_EQ(folder.List(),
+              (Words{"k1.exr", "k1.mean.png", "k1.normal.png", "k1.note.png", "mean.exr"}));
+    ASSERT_EQ(Bake(mesh, "k1.exr", {"--preview", "--maps", "k1"}).status, 0);
+    EXPECT_EQ(folder.List(), (Words{"k1.exr", "k1.note.png", "k1.png", "mean.exr"}));
+}
+
+TEST_F(Previews, ThatLimnHasNotMadeStay) {
+    folder.Write("a.png", "somebody's");
+    fs::copy(folder / "a.png", folder / "a.mean.png");
+    ASSERT_EQ(Bake(mesh, "a.exr").status, 0);
+    EXPECT_EQ(folder.List(), (Words{"a.exr", "a.mean.png", "a.png"}));
+}
+
+TEST_F(Previews, AreTheSameForAnyNumberOfThreads) {
+    std::map<std::string, std::string> bytes;
+    for (char const* threads : {"1", "3"}) {
+        ASSERT_EQ(Bake(mesh, "{map}.exr",
+                       {"--preview", "--preview-legend", "--maps", "mean,position,normal",
+                        "--threads", threads})
+                      .status,
+                  0);
+        for (std::string const& name : folder.List()) {
+            auto const [found, isNew] = bytes.try_emplace(name, test::ReadText(folder / name));
+            EXPECT_TRUE(found->second == test::ReadText(folder / name)) << name;
+        }
+    }
+    EXPECT_EQ(bytes.size(), 9u);
 }
 
 class SkipExisting : public Cli {
@@ -167,7 +221,16 @@ TEST_F(SkipExisting, BakesAnewWhereTheFileIsNotComplete) {
 TEST_F(SkipExisting, MakesThePreviewThatIsMissing) {
     EXPECT_FALSE(fs::exists(folder / "a.png"));
     ASSERT_EQ(BakeAgain({"--preview"}).status, 0);
-    EXPECT_EQ(test::ReadPng(folder / "a.png").height, 64 + 28);
+    EXPECT_EQ(test::ReadPng(folder / "a.png").height, 64);
+}
+
+TEST_F(SkipExisting, MakesThePreviewAnewThatLooksOtherwise) {
+    ASSERT_EQ(BakeAgain({"--preview"}).status, 0);
+    EXPECT_FALSE(Rebakes({"--preview"}));
+    EXPECT_TRUE(Rebakes({"--preview", "--preview-range", "-1,1"}));
+    EXPECT_FALSE(Rebakes({"--preview", "--preview-range", "-1,1"}));
+    EXPECT_TRUE(Rebakes({"--preview", "--preview-range", "-1,1", "--preview-legend"}));
+    EXPECT_FALSE(Rebakes({}));  // the file is as it should be
 }
 
 }  // namespace

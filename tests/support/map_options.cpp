@@ -21,7 +21,7 @@ engine::BakeOptions OptionsForAllMaps(engine::Model const& model) {
                     "curvature", "position",     "principal-direction",
                     "normal",    "displacement", "stretch",
                     "tension",   "bands",        "noise",
-                    "field",     "primvar:color"};
+                    "field",     "overlap",      "primvar:color"};
     std::vector<double> swollen = model.GetPositions();
     for (double& x : swollen) x *= 1.25;
     options.against = model.WithPoints(std::move(swollen));

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/bake/bake.h"
-#include "engine/bake/raster/uv_raster.h"
+#include "engine/bake/raster/textured_faces.h"
 #include "eval/surface/limit_surface.h"
 
 namespace limn::engine {
@@ -14,15 +14,17 @@ struct AuditInput {
     AuditInput(Model const& bakedModel, BakeOptions const& bakeOptions,
                BakeReport const& bakeReport, Job const& auditJob);
 
+    /// Of the texels' centres, or of all samples that the bake took in them.
     TileGrid MakeGrid(int tile) const;
+    TileGrid MakeSampleGrid(int tile) const;
 
     Model model;
     Far::TopologyLevel level;
     BakeOptions const& options;
     BakeReport const& bake;
     Job const& job;
-    eval::LimitSurface surface, uvSurface;
-    std::vector<char> isBaked;  ///< per face: selected, and with a limit
+    eval::LimitSurface surface;
+    TexturedFaces faces;
 };
 
 }  // namespace limn::engine

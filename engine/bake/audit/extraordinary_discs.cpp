@@ -49,7 +49,7 @@ ExtraordinaryDiscs::ExtraordinaryDiscs(AuditInput const& input, std::vector<char
             disc.sectors.push_back({face, domain, 2, 0.5});
         _discs.push_back(std::move(disc));
     }
-    UVRaster raster(input.uvSurface, input.model.GetUVs());
+    UVRaster raster(input.faces.surface, input.faces.uvs);
     std::erase_if(_discs, [&](Disc& disc) { return !ChooseRadius(disc.sectors, raster); });
     Integrate();
 }
@@ -89,7 +89,8 @@ std::vector<eval::DiscSector> ExtraordinaryDiscs::FindSectors(Index vertex) cons
 bool ExtraordinaryDiscs::ChooseRadius(std::vector<eval::DiscSector>& sectors,
                                       UVRaster& raster) const {
     bool const isLoop = _input.surface.IsLoop();
-    double const width = _input.options.width, height = _input.options.height;
+    int const samples = _input.options.samplesPerSide;
+    double const width = samples * _input.options.width, height = samples * _input.options.height;
     double count = 0.0, fall = std::numeric_limits<double>::infinity();  // of texels; the latter of
                                                                          // the sparsest sector
     for (eval::DiscSector const& sector : sectors) {

@@ -28,7 +28,7 @@ public:
     explicit GaussBonnetAuditor(AuditInput const& input)
         : _input(input), _components(far_ext::FaceComponents::Find(input.level)) {}
 
-    std::vector<GaussBonnetAudit> Run();
+    std::vector<GaussBonnetAudit> Run(double bound);
 
 private:
     struct Sums {
@@ -52,53 +52,80 @@ private:
         explicit Worker(AuditInput const& input)
             : tree(input.surface, input.model.GetPositions(), 3),
               sampler(tree, eval::Quantity::Tangents, Orientation::Right),
-              raster(input.uvSurface, input.model.GetUVs()) {}
+              raster(input.faces.surface, input.faces.uvs) {}
+    };
+
+    struct FaceSum {
+        Index face;
+        double apart;
+    };
+    /// Of one strip, or of all texels.
+    struct Totals {
+        std::vector<Sums> ofComponent;
+        std::vector<FaceSum> ofFace;  // with texels in the strip, or all that have some
     };
 
     std::vector<double> FindAreas() const;
     std::string FindReason(int component) const;
-    std::vector<Sums> SumTexels(ExtraordinaryDiscs const& discs) const;
+    std::string FindReasonInTexels(int component, Sums const& sums, double area) const;
+    Totals SumTexels(ExtraordinaryDiscs const& discs) const;
+    void SumStrip(Worker& worker, ExtraordinaryDiscs const& discs, TileGrid const& grid,
+                  int firstRow, std::vector<Index> const& faces, Totals& totals) const;
     void SumFace(Worker& worker, ExtraordinaryDiscs const& discs, Index face, TileGrid const& grid,
                  Sums& sums) const;
+    void FindWorstFace(ExtraordinaryDiscs const& discs, std::vector<FaceSum> const& ofFace,
+                       GaussBonnetAudit& audit) const;
 
     AuditInput const& _input;
     far_ext::FaceComponents _components;
 };
 
-/// K dA over texel centres, per component; strip sums are added in order, whatever the threads.
-std::vector<GaussBonnetAuditor::Sums> GaussBonnetAuditor::SumTexels(
-    ExtraordinaryDiscs const& discs) const {
+/// K dA over samples; strip sums are added in order, whatever the threads.
+GaussBonnetAuditor::Totals GaussBonnetAuditor::SumTexels(ExtraordinaryDiscs const& discs) const {
     tbb::enumerable_thread_specific<std::unique_ptr<Worker>> workers;
-    std::vector<Sums> total(static_cast<size_t>(_components.count));
-    std::vector<UVBounds> bounds(_input.isBaked.size());
-    UVRaster measure(_input.uvSurface, _input.model.GetUVs());
-    for (Index face = 0; face < static_cast<Index>(bounds.size()); ++face) {
-        if (_input.isBaked[face]) bounds[face] = measure.GetBounds(face);
-    }
+    size_t const numComponents = static_cast<size_t>(_components.count);
+    TexturedFaces const& faces = _input.faces;
+    std::vector<Sums> total(numComponents);
+    std::vector<double> ofFace(faces.isBaked.size(), 0.0);
     for (int tile : _input.bake.tiles) {
-        TileGrid const grid = _input.MakeGrid(tile);
-        FaceBins const bins(bounds, _input.isBaked, grid, kStripRows, grid.width);
-        size_t const numStrips = static_cast<size_t>(bins.GetNumStrips());
-        std::vector<std::vector<Sums>> ofStrip(numStrips, std::vector<Sums>(total.size()));
-        tbb::parallel_for(size_t{0}, numStrips, [&](size_t index) {
+        TileGrid const grid = _input.MakeSampleGrid(tile);
+        FaceBins const bins(faces.bounds, faces.isBaked, grid, kStripRows, grid.width);
+        std::vector<Totals> ofStrip(static_cast<size_t>(bins.GetNumStrips()),
+                                    {std::vector<Sums>(numComponents), {}});
+        tbb::parallel_for(size_t{0}, ofStrip.size(), [&](size_t index) {
             _input.job.CheckStopped();
             auto& slot = workers.local();
             if (!slot) slot = std::make_unique<Worker>(_input);
-            int const firstRow = static_cast<int>(index) * kStripRows;
-            slot->strip.Reset(firstRow, std::min(kStripRows, grid.height - firstRow), grid.width);
-            for (Index face : bins.GetStrip(static_cast<int>(index))[0])
-                SumFace(*slot, discs, face, grid, ofStrip[index][_components.ofFace[face]]);
-            TexelStrip const& strip = slot->strip;
-            for (size_t texel = 0; texel < strip.owner.size(); ++texel) {
-                if (strip.overlap[texel])
-                    ++ofStrip[index][_components.ofFace[strip.owner[texel]]].overlaps;
-            }
+            int const strip = static_cast<int>(index);
+            SumStrip(*slot, discs, grid, strip * kStripRows, bins.GetStrip(strip)[0],
+                     ofStrip[index]);
         });
-        for (auto const& sums : ofStrip) {
-            for (size_t c = 0; c < total.size(); ++c) total[c].Add(sums[c]);
+        for (Totals const& strip : ofStrip) {
+            for (size_t c = 0; c < numComponents; ++c) total[c].Add(strip.ofComponent[c]);
+            for (auto const& [face, apart] : strip.ofFace) ofFace[face] += apart;
         }
     }
-    return total;
+    Totals totals{std::move(total), {}};
+    for (Index face = 0; face < static_cast<Index>(ofFace.size()); ++face)
+        totals.ofFace.push_back({face, ofFace[face]});
+    return totals;
+}
+
+void GaussBonnetAuditor::SumStrip(Worker& worker, ExtraordinaryDiscs const& discs,
+                                  TileGrid const& grid, int firstRow,
+                                  std::vector<Index> const& faces, Totals& totals) const {
+    worker.strip.Reset(firstRow, std::min(kStripRows, grid.height - firstRow), grid.width);
+    for (Index face : faces) {
+        Sums sums;
+        SumFace(worker, discs, face, grid, sums);
+        if (sums.area == 0.0) continue;
+        totals.ofComponent[_components.ofFace[face]].Add(sums);
+        totals.ofFace.push_back({face, sums.apart});
+    }
+    for (size_t texel = 0; texel < worker.strip.owner.size(); ++texel) {
+        if (worker.strip.overlap[texel])
+            ++totals.ofComponent[_components.ofFace[worker.strip.owner[texel]]].overlaps;
+    }
 }
 
 /// Adds what lies of a face in the worker's strip.
@@ -160,7 +187,7 @@ std::string GaussBonnetAuditor::FindReason(int component) const {
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         if (_components.ofFace[face] != component) continue;
         if (level.IsFaceHole(face)) return "it has a hole";
-        if (!_input.isBaked[face]) return "not all of its faces are baked";
+        if (!_input.faces.isBaked[face]) return "not all of its faces are baked";
         for (Index edge : level.GetFaceEdges(face)) {
             if (level.IsEdgeBoundary(edge)) return "it is not closed";
             if (level.IsEdgeInfSharp(edge)) return "it has infinitely sharp creases";
@@ -172,7 +199,47 @@ std::string GaussBonnetAuditor::FindReason(int component) const {
     return {};
 }
 
-std::vector<GaussBonnetAudit> GaussBonnetAuditor::Run() {
+/// Why a component's texels cannot tell its integral; empty if they can.
+std::string GaussBonnetAuditor::FindReasonInTexels(int component, Sums const& sums,
+                                                   double area) const {
+    if (sums.overlaps) return "its texture coordinates overlap";
+    auto const& missed = _input.bake.facesWithoutTexels;
+    auto const numMissed = std::count_if(missed.begin(), missed.end(), [&](Index face) {
+        return _components.ofFace[face] == component;
+    });
+    if (numMissed) {
+        return fmt::format("{} of its faces have no texel; more texels resolve them", numMissed);
+    }
+    // Texel centres miss or double-count up to half a texel along chart borders.
+    if (std::abs(sums.area - area) > 0.01 * area)
+        return fmt::format("its texels cover {:.1f} % of its area", 100.0 * sums.area / area);
+    return {};
+}
+
+/// Compares each face's texels with cubature on it.
+void GaussBonnetAuditor::FindWorstFace(ExtraordinaryDiscs const& discs,
+                                       std::vector<FaceSum> const& ofFace,
+                                       GaussBonnetAudit& audit) const {
+    eval::FaceTree tree(_input.surface, _input.model.GetPositions(), 3);
+    for (auto const& [face, apart] : ofFace) {
+        if (_components.ofFace[face] != audit.component) continue;
+        _input.job.CheckStopped();
+        tree.Bind(face);
+        double integral = 0.0;
+        auto const add = [&, face = face](eval::SurfacePlace const& place, double weight) {
+            auto const x = eval::EvaluateSample(tree, place.domain, place.s, place.t);
+            integral += weight * x.curvature.gaussian * x.tangentS.cross(x.tangentT).norm() *
+                        discs.GetTexelShare(face, place.domain, place.s, place.t);
+        };
+        eval::ForEachGaussPoint(_input.surface, face, add);
+        double const error = std::abs(apart - integral);
+        if (audit.worstFace >= 0 && !(error > audit.worstFaceError)) continue;
+        audit.worstFace = face;
+        audit.worstFaceError = error;
+    }
+}
+
+std::vector<GaussBonnetAudit> GaussBonnetAuditor::Run(double bound) {
     std::vector<GaussBonnetAudit> audits(static_cast<size_t>(_components.count));
     for (int c = 0; c < _components.count; ++c) {
         audits[c].component = c;
@@ -181,44 +248,33 @@ std::vector<GaussBonnetAudit> GaussBonnetAuditor::Run() {
     std::vector<char> isWanted;
     for (int component : _components.ofFace) isWanted.push_back(audits[component].reason.empty());
     ExtraordinaryDiscs const discs(_input, isWanted);
-    std::vector<Sums> const sums = SumTexels(discs);
+    Totals const totals = SumTexels(discs);
     std::vector<double> integrals;
-    for (Sums const& sum : sums) integrals.push_back(sum.apart);
+    for (Sums const& sum : totals.ofComponent) integrals.push_back(sum.apart);
     discs.AddIntegrals(_components.ofFace, integrals);
     std::vector<double> const areas = FindAreas();
     std::vector<int> const euler = _components.FindEulerCharacteristics(_input.level);
 
     for (GaussBonnetAudit& audit : audits) {
         int const c = audit.component;
+        Sums const& sums = totals.ofComponent[c];
         audit.integral = integrals[c];
-        audit.texelSum = sums[c].curvature;
+        audit.texelSum = sums.curvature;
         audit.expected = 2.0 * kPi * euler[c];
         audit.relativeError =
-            std::abs(audit.integral - audit.expected) / std::max(2.0 * kPi, sums[c].magnitude);
-        if (audit.reason.empty() && sums[c].overlaps)
-            audit.reason = "its texture coordinates overlap";
-        auto const& missed = _input.bake.facesWithoutTexels;
-        auto const numMissed = std::count_if(missed.begin(), missed.end(), [&](Index face) {
-            return _components.ofFace[face] == c;
-        });
-        if (audit.reason.empty() && numMissed) {
-            audit.reason =
-                fmt::format("{} of its faces have no texel; more texels resolve them", numMissed);
-        }
-        // Texel centres miss or double-count up to half a texel along chart borders.
-        if (audit.reason.empty() && std::abs(sums[c].area - areas[c]) > 0.01 * areas[c]) {
-            audit.reason = fmt::format("its texels cover {:.1f} % of its area",
-                                       100.0 * sums[c].area / areas[c]);
-        }
+            std::abs(audit.integral - audit.expected) / std::max(2.0 * kPi, sums.magnitude);
+        if (audit.reason.empty()) audit.reason = FindReasonInTexels(c, sums, areas[c]);
         audit.wasAudited = audit.reason.empty();
+        audit.isWithin = !audit.wasAudited || audit.relativeError <= bound;
+        if (!audit.isWithin) FindWorstFace(discs, totals.ofFace, audit);
     }
     return audits;
 }
 
 }  // namespace
 
-std::vector<GaussBonnetAudit> AuditGaussBonnet(AuditInput const& input) {
-    return GaussBonnetAuditor(input).Run();
+std::vector<GaussBonnetAudit> AuditGaussBonnet(AuditInput const& input, double bound) {
+    return GaussBonnetAuditor(input).Run(bound);
 }
 
 }  // namespace limn::engine

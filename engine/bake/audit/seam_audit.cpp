@@ -26,7 +26,7 @@ public:
         : _input(input),
           _channels(channels),
           _pathOfTile(pathOfTile),
-          _raster(input.uvSurface, input.model.GetUVs()) {}
+          _raster(input.faces.surface, input.faces.uvs) {}
 
     SeamAudit Run(MapTraits const& map);
 
@@ -50,7 +50,7 @@ SeamAuditor::Values SeamAuditor::LookAlong(Index face, int corner, bool isRevers
     _raster.Bind(face);
     for (int k = 0; k < kPlaces; ++k) {
         double const tau = (k + 0.5) / kPlaces;
-        auto const place = eval::GetEdgePlace(_input.uvSurface, face, faceSize, corner,
+        auto const place = eval::GetEdgePlace(_input.faces.surface, face, faceSize, corner,
                                               isReversed ? 1.0 - tau : tau);
         auto const [u, v] = _raster.Evaluate(place.domain, place.s, place.t);
         // A seam on a tile's border belongs to the tile its face lies in: look a hair inside.
@@ -69,7 +69,8 @@ SeamAuditor::Values SeamAuditor::LookAlong(Index face, int corner, bool isRevers
 bool SeamAuditor::IsSeam(Index edge, MapTraits const& map) const {
     auto const faces = _input.level.GetEdgeFaces(edge);
     if (faces.size() != 2 || _input.level.DoesEdgeFVarTopologyMatch(edge, 0)) return false;
-    if (!_input.isBaked[faces[0]] || !_input.isBaked[faces[1]] || faces[0] == faces[1]) {
+    if (!_input.faces.isBaked[faces[0]] || !_input.faces.isBaked[faces[1]] ||
+        faces[0] == faces[1]) {
         return false;
     }
     // Across an infinitely sharp edge each side rightly has its own normal and curvature.

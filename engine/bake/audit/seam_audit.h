@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@ struct SeamAudit {
     size_t samples = 0;
     double max = 0.0, p99 = 0.0;  ///< in map units; of vectors the length of the difference
     std::string place;            ///< of the maximum
+    std::optional<double> bound;  ///< of `max`, where there is one
+    bool isWithin = true;         ///< the bound
 };
 
 /// Looks finished files up bilinearly from both sides of every seam, map by map; lines have no sign

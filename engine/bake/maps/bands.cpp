@@ -51,6 +51,8 @@ private:
             }
         }
 
+        TangentialPart TakeTangentialPart() override { return _frame.TakeTangentialPart(); }
+
     private:
         int _numBands;
         VectorFrame _frame;

@@ -64,6 +64,7 @@ std::unique_ptr<Map> MakeCurvatureMap(std::string const& name, MapOptions const&
                                    [&](Row const& r) { return name == r.name; });
     MapTraits traits{.name = name, .channels = {"Y"}, .units = row.units, .range = row.range};
     traits.quantity = eval::Quantity::Curvature;
+    if (name == "shape-index") traits.limits = {-1.0f, 1.0f};
     if (name == "curvature") traits.channels = {"k1", "k2", "mean", "gaussian"};
     return MakePointwiseMap(std::move(traits), row.evaluate);
 }

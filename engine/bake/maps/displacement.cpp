@@ -65,6 +65,8 @@ private:
             }
         }
 
+        TangentialPart TakeTangentialPart() override { return _frame.TakeTangentialPart(); }
+
     private:
         VectorFrame _frame;
         std::optional<eval::FinerSurface::Sampler> _finer;

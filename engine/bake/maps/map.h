@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 
 #include "engine/bake/maps/channel_group.h"
 #include "engine/bake/maps/map_options.h"
+#include "engine/bake/maps/tangential_part.h"
 #include "engine/scene/job.h"
 #include "eval/surface/face_tree.h"
 #include "eval/surface/surface_kernel.h"
@@ -31,6 +33,7 @@ enum class RangeKind {
     Positive,    ///< of one sign, or of none in particular
     Vector,      ///< three components as colours, each between its own limits
     UnitVector,  ///< three components from -1 to 1
+    Colours,     ///< three components from 0 to 1, to be shown as they are
     Line,        ///< three components whose common sign is free
     Flow         ///< two components along the texture coordinates
 };
@@ -41,11 +44,14 @@ struct MapTraits {
     std::vector<std::string> channels;  ///< EXR names within the map, e.g. "R", "G", "B"
     std::string units;
     RangeKind range = RangeKind::Signed;
-    std::vector<ChannelGroup> groups;  ///< how channels are averaged; none: all plainly
+    std::optional<std::array<float, 2>> limits;  ///< of its values, where these are always the same
+    std::vector<ChannelGroup> groups;            ///< how channels are averaged; none: all plainly
 
     eval::Quantity quantity = eval::Quantity::Position;  ///< what it needs of the surface
     bool needsJacobian = false;                          ///< d(u,v)/d(s,t) at its samples
+    bool needsFaceCounts = false;  ///< nothing of it, but how many faces lie over a texel's centre
 
+    bool isPlace = false;              ///< told by its distance to the origin
     bool isSameAcrossCreases = false;  ///< along infinitely sharp edges both sides agree
     bool isComparableAtSeams = true;   ///< along texture seams both sides agree
 
@@ -106,8 +112,15 @@ public:
     /// The map's channels at a block of samples: out[c * outStride + i].
     virtual void Evaluate(SampleBlock const& block, float* out, size_t outStride) = 0;
 
+    /// Instead, of a map that needs face counts: its channel at texels that numFaces[i] >= 1 faces
+    /// lie over.
+    virtual void EvaluateCounts(std::span<int const> /*numFaces*/, float* /*out*/) {}
+
     /// Samples for which the map had to look at a place nearby.
     virtual size_t GetNumDegenerate() const { return 0; }
+
+    /// What was left out of displacements since the last call.
+    virtual TangentialPart TakeTangentialPart() { return {}; }
 };
 
 /// A map of a bake. Made by MakeMaps, prepared once, sampled on many threads.

@@ -2,6 +2,9 @@
 #include "engine/bake/maps/map_table.h"
 
 #include <algorithm>
+#include <iterator>
+#include <sstream>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -12,33 +15,65 @@ namespace limn::engine {
 namespace {
 
 struct MapRow {
-    char const* name;  ///< a map's, or the first part of one that ends with ':'
+    std::string_view name;  ///< a map's, or the first part of one that ends with ':'
     MakeMap make;
+    std::string_view members;  ///< of MapOptions: those that it takes, beside the encoding
 };
 
-constexpr MapRow kMaps[] = {{"mean", MakeCurvatureMap},
-                            {"gaussian", MakeCurvatureMap},
-                            {"k1", MakeCurvatureMap},
-                            {"k2", MakeCurvatureMap},
-                            {"curvedness", MakeCurvatureMap},
-                            {"shape-index", MakeCurvatureMap},
-                            {"curvature", MakeCurvatureMap},
-                            {"principal-direction", MakeVectorMap},
-                            {"position", MakeVectorMap},
-                            {"normal", MakeVectorMap},
-                            {"displacement", MakeDisplacementMap},
-                            {"stretch", MakeStretchMap},
-                            {"tension", MakeTensionMap},
-                            {"bands", MakeBandsMap},
-                            {"noise", MakeNoiseMap},
-                            {"field", MakeFieldMap},
-                            {"primvar:", MakePrimvarMap}};
+constexpr MapRow kMaps[] = {{"mean", MakeCurvatureMap, ""},
+                            {"gaussian", MakeCurvatureMap, ""},
+                            {"k1", MakeCurvatureMap, ""},
+                            {"k2", MakeCurvatureMap, ""},
+                            {"curvedness", MakeCurvatureMap, ""},
+                            {"shape-index", MakeCurvatureMap, ""},
+                            {"curvature", MakeCurvatureMap, ""},
+                            {"principal-direction", MakeVectorMap, ""},
+                            {"position", MakeVectorMap, ""},
+                            {"normal", MakeVectorMap, ""},
+                            {"displacement", MakeDisplacementMap, "against isVector space"},
+                            {"stretch", MakeStretchMap, ""},
+                            {"tension", MakeTensionMap, "rest"},
+                            {"bands", MakeBandsMap, "bands isVector space"},
+                            {"noise", MakeNoiseMap, "noise noiseRamp isNormalized"},
+                            {"field", MakeFieldMap, "field space isNormalized"},
+                            {"overlap", MakeOverlapMap, ""},
+                            {"primvar:", MakePrimvarMap, ""}};
 
 bool IsPrefix(std::string_view name) {
     return name.ends_with(':');
 }
 
+MapRow const* FindRow(std::string_view name) {
+    auto const row = std::ranges::find_if(kMaps, [&](MapRow const& r) {
+        return IsPrefix(r.name) ? name.starts_with(r.name) : name == r.name;
+    });
+    return row == std::end(kMaps) ? nullptr : row;
+}
+
 }  // namespace
+
+bool IsMapName(std::string_view name) {
+    return FindRow(name) != nullptr;
+}
+
+std::vector<std::string> ListFixedMapNames() {
+    std::vector<std::string> names;
+    for (MapRow const& row : kMaps) {
+        if (!IsPrefix(row.name)) names.emplace_back(row.name);
+    }
+    return names;
+}
+
+std::vector<std::string> ListMapsThatTake(std::string_view member) {
+    std::vector<std::string> names;
+    for (MapRow const& row : kMaps) {
+        std::istringstream words{std::string(row.members)};
+        if (std::find(std::istream_iterator<std::string>(words), {}, member) !=
+            std::istream_iterator<std::string>())
+            names.emplace_back(row.name);
+    }
+    return names;
+}
 
 std::string ListMapNames() {
     std::string names;
@@ -56,10 +91,8 @@ std::vector<std::unique_ptr<Map>> MakeMaps(MapOptions const& options, Model cons
                         [&](auto const& map) { return map->GetTraits().name == name; })) {
             throw Error(ErrorCode::BadOption, fmt::format("`maps`: '{}' is asked for twice", name));
         }
-        auto const row = std::find_if(std::begin(kMaps), std::end(kMaps), [&](MapRow const& r) {
-            return IsPrefix(r.name) ? name.starts_with(r.name) : name == r.name;
-        });
-        if (row == std::end(kMaps)) {
+        MapRow const* const row = FindRow(name);
+        if (!row) {
             throw Error(
                 ErrorCode::BadOption,
                 fmt::format("`maps`: there is no map '{}'; there are: {}", name, ListMapNames()));

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/bake/maps/map.h"
@@ -21,6 +22,14 @@ using MakeMap = std::unique_ptr<Map> (*)(std::string const& name, MapOptions con
 /// MakeMap
 std::vector<std::unique_ptr<Map>> MakeMaps(MapOptions const& options, Model const& model);
 
+bool IsMapName(std::string_view name);
+
+/// The names of all maps but those that begin with a prefix.
+std::vector<std::string> ListFixedMapNames();
+
+/// The maps that a member of MapOptions has an effect on.
+std::vector<std::string> ListMapsThatTake(std::string_view member);
+
 /// "mean, gaussian, ..., primvar:NAME"
 std::string ListMapNames();
 
@@ -33,6 +42,7 @@ std::unique_ptr<Map> MakeBandsMap(std::string const&, MapOptions const&, Model c
 std::unique_ptr<Map> MakeNoiseMap(std::string const&, MapOptions const&, Model const&);
 std::unique_ptr<Map> MakeFieldMap(std::string const&, MapOptions const&, Model const&);
 std::unique_ptr<Map> MakeTensionMap(std::string const&, MapOptions const&, Model const&);
+std::unique_ptr<Map> MakeOverlapMap(std::string const&, MapOptions const&, Model const&);
 std::unique_ptr<Map> MakePrimvarMap(std::string const&, MapOptions const&, Model const&);
 
 }  // namespace limn::engine

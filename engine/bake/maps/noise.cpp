@@ -76,10 +76,12 @@ std::unique_ptr<Map> MakeNoiseMap(std::string const& name, MapOptions const& opt
     if (options.isNormalized) {
         traits.range = RangeKind::Positive;
         traits.units = "share of the range";
+        traits.limits = {0.0f, 1.0f};
     }
     if (options.noiseRamp) {
-        traits.range = RangeKind::Vector;
+        traits.range = RangeKind::Colours;
         traits.units = "colour";
+        traits.limits.reset();
         traits.channels = {"R", "G", "B"};
     }
     traits.optionText = fmt::format("octaves={} frequency={} gain={} seed={} normalize={} ramp={}",

@@ -13,10 +13,13 @@ void VectorFrame::AddNeeds(MapTraits& traits) const {
 }
 
 void VectorFrame::Put(SampleBlock const& block, size_t i, Eigen::Vector3d const& displacement,
-                      float* out, size_t outStride) const {
+                      float* out, size_t outStride) {
     Eigen::Vector3d const normal = block.GetVector(eval::kNormalX, i);
     if (!_isVector) {
-        out[i] = static_cast<float>(displacement.dot(normal));
+        double const along = displacement.dot(normal);
+        double const squared = (displacement - along * normal).squaredNorm();
+        out[i] = static_cast<float>(along);
+        _leftOut.Add({1, squared, std::sqrt(squared), displacement.norm()});
         return;
     }
     Eigen::Vector3d const result =

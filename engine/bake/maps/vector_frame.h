@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <utility>
+
 #include "engine/bake/maps/map.h"
 
 namespace limn::engine {
 
-/// How a displacement is written: along the normal, or as a vector in object or tangent space.
+/// How a displacement is written: along the normal, or as a vector in object or tangent space. One
+/// per sampler.
 class VectorFrame {
 public:
     explicit VectorFrame(MapOptions const& options)
@@ -18,7 +21,10 @@ public:
 
     /// Writes a displacement at sample i of a block: out[c * outStride + i].
     void Put(SampleBlock const& block, size_t i, Eigen::Vector3d const& displacement, float* out,
-             size_t outStride) const;
+             size_t outStride);
+
+    /// What Put has left out since the last call.
+    TangentialPart TakeTangentialPart() { return std::exchange(_leftOut, {}); }
 
 private:
     Eigen::Vector3d ToTangentSpace(SampleBlock const& block, size_t i,
@@ -26,6 +32,7 @@ private:
                                    Eigen::Vector3d const& normal) const;
 
     bool _isVector, _isTangent;
+    TangentialPart _leftOut;
 };
 
 }  // namespace limn::engine

@@ -11,6 +11,7 @@ std::unique_ptr<Map> MakeVectorMap(std::string const& name, MapOptions const&, M
     if (name == "position") {
         traits.units = "length";
         traits.range = RangeKind::Vector;
+        traits.isPlace = true;
         traits.isSameAcrossCreases = true;
         return MakePointwiseMap(std::move(traits), CopyVector<eval::kPositionX>);
     }

@@ -20,23 +20,7 @@ std::array<double, 3> TexturePiece::Evaluate(int coordinate, double x, double y)
 }
 
 void TexturePiece::FindBounds() {
-    double const farthest = isTriangle ? 2.0 / 3.0 : 0.5;  // |x|, |y| over the domain
-    double power[8] = {1, farthest};
-    for (int i = 2; i < 8; ++i) power[i] = power[i - 1] * farthest;
-    for (int k = 0; k < 2; ++k) {
-        double* const b = bounds[k];
-        b[0] = b[1] = b[2] = reach[k] = 0.0;
-        int index = 0;
-        for (int j = 0; j < (isTriangle ? 5 : 4); ++j) {
-            for (int i = 0; i < (isTriangle ? 5 - j : 4); ++i, ++index) {
-                double const c = std::abs(coefficients[k][index]);
-                if (i + j > 0) reach[k] += c * power[i + j];
-                if (i > 1) b[0] += i * (i - 1) * c * power[i + j - 2];
-                if (i > 0 && j > 0) b[1] += i * j * c * power[i + j - 2];
-                if (j > 1) b[2] += j * (j - 1) * c * power[i + j - 2];
-            }
-        }
-    }
+    for (int k = 0; k < 2; ++k) bounds[k] = eval::BoundPolynomial(isTriangle, coefficients[k]);
 }
 
 bool TexturePiece::IsCollapsed() const {

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "eval/surface/polynomial_bounds.h"
 #include "far_ext/rings/ring_subdivision.h"
 
 namespace limn::engine {
@@ -11,9 +12,8 @@ namespace limn::engine {
 struct TexturePiece {
     double coefficients[2][16];  ///< see patch_polynomial.h; 15 used on a triangle
     double originX = 0.0, originY = 0.0;
-    double bounds[2][3];        ///< of |d2/dxx|, |d2/dxy|, |d2/dyy| over the piece, per coordinate
-    double reach[2];            ///< how far the map strays from its value at the centre
-    far_ext::SubDomain domain;  ///< of the piece within the face's domain
+    eval::PolynomialBounds bounds[2];  ///< per coordinate
+    far_ext::SubDomain domain;         ///< of the piece within the face's domain
     bool isTriangle = false;
 
     double GetCentre() const;
@@ -22,12 +22,9 @@ struct TexturePiece {
     std::array<double, 3> Evaluate(int coordinate, double x, double y) const;
 
     /// Bound of how far a coordinate strays from its linear part within `half` of a place.
-    double GetStray(int coordinate, double half) const {
-        double const* const b = bounds[coordinate];
-        return 0.5 * half * half * (b[0] + 2 * b[1] + b[2]);
-    }
+    double GetStray(int coordinate, double half) const { return bounds[coordinate].GetStray(half); }
 
-    /// Fills bounds and reach from the coefficients.
+    /// Fills the bounds from the coefficients.
     void FindBounds();
 
     /// True if the piece is squeezed to a curve or a point: it covers no area to speak of.

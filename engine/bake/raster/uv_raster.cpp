@@ -14,7 +14,13 @@ namespace limn::engine {
 namespace {
 
 constexpr double kClampParameter = 1e-6;
-constexpr double kOverlapParameter = 1e-3;  // nearer to an edge two faces may well share a texel
+// A face that covers a sample reaches to within kCoveredTexels of it: one that reaches farther
+// round it than this is not merely a neighbour across an edge.
+constexpr double kOverlapDepth = 2.0 * kCoveredTexels;
+// Nearer to an edge than this, both sides of it may claim a sample, or none.
+constexpr double kUndecidedDepth = 0.5 * kCoveredTexels;
+// There a point beside the sample decides, in a direction that no layout has its edges in.
+constexpr double kAsideX = 3.0 * kCoveredTexels, kAsideY = 1.2599 * kCoveredTexels;
 constexpr int kMaxDepth = 30;  // pieces below 2^-30 of a face are linear to any precision
 
 /// Where the run of texels from `begin` on that lie inside and have no owner ends.
@@ -42,14 +48,58 @@ void TexelStrip::Resize(int first, int rows, int tileWidth) {
     owner.resize(count);
     overlap.resize(count);
     failed.resize(count);
+    if (countsFaces) faceCounts.resize(count);
 }
 
 void TexelStrip::Reset(int first, int rows, int tileWidth) {
     Resize(first, rows, tileWidth);
-    std::fill(owner.begin(), owner.end(), -1);
-    std::fill(overlap.begin(), overlap.end(), uint8_t{0});
-    std::fill(failed.begin(), failed.end(), uint8_t{0});
+    ClearColumns(0, tileWidth);
+    overlaps.clear();
+    deepestOverlap = 0.0;
 }
+
+void TexelStrip::ClearColumns(int first, int count) {
+    for (int row = 0; row < numRows; ++row) {
+        size_t const at = static_cast<size_t>(row) * width + first;
+        std::fill_n(owner.begin() + at, count, -1);
+        std::fill_n(overlap.begin() + at, count, uint8_t{0});
+        std::fill_n(failed.begin() + at, count, uint8_t{0});
+        if (countsFaces) std::fill_n(faceCounts.begin() + at, count, FaceCount{});
+    }
+}
+
+/// In the domain of the face, not of the piece.
+struct UVRaster::Surroundings {
+    double s, t;
+    double xs, xt, ys, yt;  // texels per s and t
+    bool isTriangle, isSubQuad;
+
+    double GetDeterminant() const { return xs * yt - xt * ys; }
+
+    /// Texels from here to the face's nearest edge; negative outside of the face. The sides at
+    /// which sub-quads of a polygon meet are no edges.
+    double GetDepth() const {
+        double const area = std::abs(GetDeterminant());
+        double const alongS = std::hypot(xs, ys), alongT = std::hypot(xt, yt);
+        double depth = std::min(s * area / alongT, t * area / alongS);
+        if (isTriangle)
+            depth = std::min(depth, (1.0 - s - t) * area / std::hypot(xs - xt, ys - yt));
+        else if (!isSubQuad)
+            depth = std::min({depth, (1.0 - s) * area / alongT, (1.0 - t) * area / alongS});
+        return area > 0.0 ? depth : 0.0;
+    }
+
+    /// Whether the point (dx, dy) texels beside is the face's.
+    bool HoldsBeside(double dx, double dy) const {
+        double const determinant = GetDeterminant();
+        if (determinant == 0.0) return false;
+        double const besideS = s + (yt * dx - xt * dy) / determinant,
+                     besideT = t + (xs * dy - ys * dx) / determinant;
+        if (besideS < 0.0 || besideT < 0.0) return false;
+        if (isTriangle) return besideS + besideT <= 1.0;
+        return isSubQuad || (besideS <= 1.0 && besideT <= 1.0);
+    }
+};
 
 UVRaster::UVRaster(eval::LimitSurface const& surface, std::span<double const> uvs)
     : _tree(surface, uvs, 2), _isTriangle(surface.IsLoop()) {}
@@ -65,7 +115,8 @@ UVBounds UVRaster::GetBounds(Index face) {
             // Terms bounded one by one hug a bicubic piece closer than the spline's points.
             double const* const c = _tree.GetLeaf(0).coefficients + 16 * k;
             double const middle = _tree.GetOrigin(0)[k] + c[0];
-            double reach = 0.0;
+            double reach =
+                0x1p-46 * (std::abs(_tree.GetOrigin(0)[k]) + std::abs(c[0]));  // rounding
             for (int i = 1; i < 16; ++i)
                 reach += std::abs(c[i]) * std::ldexp(1.0, -(i % 4 + i / 4));
             low[k] = std::max(low[k], middle - reach);
@@ -153,9 +204,9 @@ void UVRaster::RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain cons
     piece.coefficients[1][0] = centreY - piece.originY;
     piece.FindBounds();
     double const top = _strip->firstRow - 1.0, bottom = _strip->firstRow + _strip->numRows + 0.0;
-    if (centreY + piece.reach[1] < top || centreY - piece.reach[1] > bottom ||
-        centreX + piece.reach[0] < _firstColumn - 1.0 ||
-        centreX - piece.reach[0] > _lastColumn + 1.0 || piece.IsCollapsed()) {
+    if (centreY + piece.bounds[1].reach < top || centreY - piece.bounds[1].reach > bottom ||
+        centreX + piece.bounds[0].reach < _firstColumn - 1.0 ||
+        centreX - piece.bounds[0].reach > _lastColumn + 1.0 || piece.IsCollapsed()) {
         return;
     }
     double worst = 0.0;
@@ -241,6 +292,8 @@ void UVRaster::Accept(TexturePiece const& piece, TexelHits& hits) {
                     texel + i, end - i, [&](int k) { return placeS(x[i + k] + centre); },
                     [&](int k) { return placeT(y[i + k] + centre); });
                 std::fill(owner + i, owner + end, _face);
+                for (int k = i; _strip->countsFaces && k < end; ++k)
+                    CountFace(texel + k, LookAround(piece, x[k] + centre, y[k] + centre));
                 i = end;
                 if (i == row.count) break;
             }
@@ -283,15 +336,50 @@ bool UVRaster::IsCovered(TexturePiece const& piece, int texel, bool isSolved, do
         double const dy = piece.Evaluate(1, cs - centre, ct - centre)[0] - targetY;
         if (dx * dx + dy * dy > kCoveredTexels * kCoveredTexels) return false;
     }
+    Surroundings const place = isSolved ? LookAround(piece, s, t) : LookAround(piece, cs, ct);
+    if (_strip->countsFaces) CountFace(texel, place);
     if (_strip->owner[texel] >= 0) {
-        double const inside =
-            std::min({cs, ct, _isTriangle ? 1.0 - cs - ct : std::min(1.0 - cs, 1.0 - ct)});
-        if (inside > kOverlapParameter && outside == 0.0) _strip->overlap[texel] = 1;
+        double const depth = place.GetDepth();
+        if (depth > kOverlapDepth) NoteOverlap(texel, depth);
         return false;
     }
     s = cs;
     t = ct;
     return true;
+}
+
+UVRaster::Surroundings UVRaster::LookAround(TexturePiece const& piece, double s, double t) const {
+    double const centre = _tree.GetCentre(), scale = piece.domain.scale;
+    auto const x = piece.Evaluate(0, s - centre, t - centre),
+               y = piece.Evaluate(1, s - centre, t - centre);
+    return {piece.domain.origin[0] + scale * s,
+            piece.domain.origin[1] + scale * t,
+            x[1] / scale,
+            x[2] / scale,
+            y[1] / scale,
+            y[2] / scale,
+            _isTriangle,
+            _tree.GetNumDomains() > 1};
+}
+
+void UVRaster::NoteOverlap(int texel, double depth) {
+    _strip->deepestOverlap = std::max(_strip->deepestOverlap, depth);
+    if (_strip->overlap[texel]) return;
+    _strip->overlap[texel] = 1;
+    _strip->overlaps.push_back({texel, _face});
+}
+
+/// Adds the current face to those that hold a texel's sample. Of the two sides of an edge one does,
+/// also where the sample lies on the edge.
+void UVRaster::CountFace(int texel, Surroundings const& place) {
+    TexelStrip::FaceCount& faces = _strip->faceCounts[texel];
+    if (faces.last == _face) return;
+    double const depth = place.GetDepth();
+    bool const isHeld =
+        std::abs(depth) < kUndecidedDepth ? place.HoldsBeside(kAsideX, kAsideY) : depth > 0.0;
+    if (!isHeld) return;
+    faces.last = _face;
+    ++faces.count;
 }
 
 }  // namespace limn::engine

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "engine/bake/raster/texture_piece.h"
+#include "engine/scene/texture_tiles.h"
 #include "engine/scene/udim.h"
 #include "eval/surface/face_tree.h"
 #include "eval/surface/inversion_kernel.h"
@@ -35,13 +37,37 @@ struct TileGrid {
 
 /// Rows [firstRow, firstRow + numRows) of a tile: who covers which texel.
 struct TexelStrip {
+    /// A texel found to be covered twice: by its owner, and by the lowest face after that.
+    struct Overlap {
+        int texel;
+        Index other;
+    };
+    /// How many faces hold a texel's sample, each side of a shared edge for itself; `last` is the
+    /// latest of them.
+    struct FaceCount {
+        Index last = -1;
+        int count = 0;
+    };
+
     int firstRow = 0, numRows = 0, width = 0;
     std::vector<Index> owner;      ///< per texel: the lowest face that covers it, or -1
-    std::vector<uint8_t> overlap;  ///< 1 where another face covers it too, apart from shared edges
+    std::vector<uint8_t> overlap;  ///< not 0 where another face covers it, too
     std::vector<uint8_t> failed;   ///< 1 where a search came to no end
+
+    std::vector<Overlap> overlaps;  ///< one for each texel that overlaps, as they were found
+    double deepestOverlap = 0.0;    ///< how far, in texels, the second face reaches round a sample
+
+    bool countsFaces = false;  ///< takes its time: no texel is settled before the last face
+    std::vector<FaceCount> faceCounts;  ///< per texel; empty unless faces are counted
 
     void Resize(int first, int rows, int tileWidth);  ///< texels keep what they held
     void Reset(int first, int rows, int tileWidth);   ///< no texel is covered
+    void ClearColumns(int first, int count);          ///< no texel of these is covered
+
+    /// The faces over a texel's sample, 0 where it is not covered. \pre countsFaces
+    int CountFaces(size_t texel) const {
+        return owner[texel] < 0 ? 0 : std::max(1, faceCounts[texel].count);
+    }
 };
 
 /// A texel covered by a face, and where on it.
@@ -67,11 +93,6 @@ struct TexelHits {
         s.clear();
         t.clear();
     }
-};
-
-/// Bounds of a face's texture coordinates: those of its control points, which hold the limit.
-struct UVBounds {
-    float minU, maxU, minV, maxV;
 };
 
 /// Inverts the texture map, itself a subdivision surface: which texels does a face cover, and where
@@ -110,13 +131,21 @@ private:
     void RasterPiece(eval::PatchPoint const& leaf, far_ext::SubDomain const& domain,
                      TexelHits& hits);
     void RasterCell(TexturePiece const& piece, double x, double y, double half, TexelHits& hits);
-    /// True if nothing is left to learn of a texel: it has an owner, and is known to be covered
-    /// twice.
-    bool IsSettled(int texel) const { return _strip->overlap[texel] && _strip->owner[texel] >= 0; }
+    /// True if nothing is left to learn of a texel from the current face: it is known to be covered
+    /// twice, or to be covered by this face.
+    bool IsSettled(int texel) const {
+        if (_strip->countsFaces && _strip->faceCounts[texel].last != _face) return false;
+        return _strip->overlap[texel] && _strip->owner[texel] >= 0;
+    }
     void GatherTargets(TexturePiece const& piece, int numTexels);
     void Accept(TexturePiece const& piece, TexelHits& hits);
     bool IsCovered(TexturePiece const& piece, int texel, bool isSolved, double targetX,
                    double targetY, double& s, double& t);
+    /// A place of the current face, and how texels change there with (s, t) of its domain.
+    struct Surroundings;
+    Surroundings LookAround(TexturePiece const& piece, double s, double t) const;
+    void NoteOverlap(int texel, double depth);
+    void CountFace(int texel, Surroundings const& place);
 
     eval::FaceTree _tree;
     bool _isTriangle;

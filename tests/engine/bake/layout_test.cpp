@@ -46,19 +46,6 @@ protected:
     BakeOptions const options = test::OptionsForAllMaps(model);
 };
 
-// -------- names
-
-TEST(ExpandPattern, ReplacesEveryToken) {
-    EXPECT_EQ(engine::ExpandPattern("out/{mesh}/{map}.<UDIM>.exr", "mean", "spot", 1012),
-              "out/spot/mean.1012.exr");
-    EXPECT_EQ(engine::ExpandPattern("{map}{map}.{udim}.exr", "k1", "spot", 1001), "k1k1.1001.exr");
-    EXPECT_EQ(engine::ExpandPattern("a.exr", "mean", "spot", 1001), "a.exr");
-}
-
-TEST(ExpandPattern, AMapsNameIsOnePartOfAPath) {
-    EXPECT_EQ(engine::ExpandPattern("{map}.exr", "primvar:a/b", "spot", 1001), "primvar_a_b.exr");
-}
-
 // -------- files and channels
 
 TEST_F(Layout, WithAMapTokenEveryMapHasItsFile) {

@@ -213,6 +213,31 @@ TEST(MeshWriter, ObjKeepsUVSharingAndOrder) {
               scene.cage.fvarChannels.at(0).valueIndices);
 }
 
+TEST(MeshWriter, FacesWithoutUVsStayWithout) {
+    Scene scene = test::MakeTorus(8, 6);
+    auto values = scene.cage.fvarChannels.at(0).valueIndices;
+    scene.cage.fvarChannels.clear();
+    std::fill(values.begin() + 4, values.begin() + 12, -1);  // of faces 1 and 2
+    std::vector<char> lacks(scene.cage.faceSizes.size(), 0);
+    lacks[1] = lacks[2] = 1;
+    scene.AddUVChannel(values, lacks);
+    for (char const* name : {"a.obj", "a.ply"}) {
+        Scene const back = RoundTrip(scene, name, Precision::Double);
+        EXPECT_EQ(back.lacksUVs, lacks) << name;
+        auto const& found = back.cage.fvarChannels.at(0).valueIndices;
+        for (size_t corner = 0; corner < values.size(); ++corner) {
+            if (values[corner] < 0) continue;
+            for (int c = 0; c < 2; ++c) {
+                ASSERT_EQ(back.uvs[2 * found[corner] + c], scene.uvs[2 * values[corner] + c])
+                    << name << " " << corner;
+            }
+        }
+    }
+    // Nothing is written for what stands for none.
+    Scene const once = RoundTrip(scene, "a.obj", Precision::Double);
+    EXPECT_EQ(RoundTrip(once, "a.obj", Precision::Double).uvs.size(), once.uvs.size());
+}
+
 TEST(MeshWriter, PlyKeepsPrimvars) {
     Scene scene = test::MakeCube();
     scene.primvars = {{"color", 3, {}}, {"quality", 1, {}}};

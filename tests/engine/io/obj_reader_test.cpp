@@ -215,14 +215,24 @@ TEST(ObjReader, CommentMayFollowALoneTextureCoordinate) {
     EXPECT_EQ(scene.uvs, (std::vector<double>{0.5, 0}));
 }
 
-TEST(ObjReader, MeshWithSomeFacesWithoutTextureIndicesHasNoUVsAndSaysSo) {
-    Scene const scene = Parse(kQuadVertices + "vt 0 0\nf 1/1 2/1 3/1\nf 1 3 4\n");
-    EXPECT_FALSE(scene.HasUVs());
-    EXPECT_TRUE(scene.cage.fvarChannels.empty());
-    ASSERT_EQ(scene.warnings.size(), 1u);
-    EXPECT_NE(scene.warnings[0].find("mesh.obj:7: 1 of 2 faces have no texture indices"),
-              std::string::npos)
-        << scene.warnings[0];
+TEST(ObjReader, FacesWithoutTextureIndicesLeaveThoseOfTheOthers) {
+    Scene const scene = Parse(kQuadVertices + "vt 0 0.5\nf 1/1 2/1 3/1\nf 1 3 4\n");
+    EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_TRUE(scene.HasUVs());
+    EXPECT_TRUE(scene.HasUVs(0));
+    EXPECT_FALSE(scene.HasUVs(1));
+    // What stands for none lies where a value is.
+    EXPECT_EQ(scene.uvs, (std::vector<double>{0, 0.5, 0, 0.5}));
+    EXPECT_EQ(scene.cage.fvarChannels.at(0).numValues, 2);
+    EXPECT_EQ(scene.cage.fvarChannels.at(0).valueIndices, (std::vector<Index>{0, 0, 0, 1, 1, 1}));
+}
+
+TEST(ObjReader, WhereAllOrNoFacesHaveTextureIndicesNoneIsMarked) {
+    for (char const* faces : {"f 1/1 2/1 3/1\nf 1/1 3/1 4/1\n", "f 1 2 3\nf 1 3 4\n"}) {
+        Scene const scene = Parse(kQuadVertices + "vt 0 0.5\n" + faces);
+        EXPECT_TRUE(scene.lacksUVs.empty()) << faces;
+        EXPECT_EQ(scene.HasUVs(1), scene.HasUVs()) << faces;
+    }
 }
 
 // -------- groups

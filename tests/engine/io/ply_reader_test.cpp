@@ -299,10 +299,14 @@ TEST(PlyReader, CornersOfOneVertexShareAUVOnlyWhereItIsTheSame) {
     EXPECT_NE(channel.valueIndices[2], channel.valueIndices[4]);
 }
 
-TEST(PlyReader, FacesWithoutTexcoordsTakeTheUVsAwayAndAWarningSaysSo) {
+TEST(PlyReader, FacesWithoutTexcoordsLeaveThoseOfTheOthers) {
     Scene const scene = Parse(MakePair("6 0 0 1 0 1 1", "0"));
-    EXPECT_FALSE(scene.HasUVs());
-    EXPECT_EQ(scene.warnings.size(), 1u);
+    EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_TRUE(scene.HasUVs(0));
+    EXPECT_FALSE(scene.HasUVs(1));
+    EXPECT_EQ(scene.uvs, (std::vector<double>{0, 0, 1, 0, 1, 1, 0, 0}));
+    EXPECT_EQ(scene.cage.fvarChannels.at(0).valueIndices, (std::vector<Index>{0, 1, 2, 3, 3, 3}));
+    EXPECT_FALSE(Parse(MakePair("0", "0")).HasUVs());
 }
 
 TEST(PlyReader, FurtherScalarsArePrimvarsAndNormalsAreNot) {

@@ -96,6 +96,21 @@ TEST(Refine, CountsFollowTheSplit) {
 
 // Refining once twice is refining twice once, up to the order of vertices: tags, UVs and positions
 // carry over.
+TEST(Refine, RefinedFacesHaveUVsWhereTheirBaseFaceHas) {
+    engine::Scene scene = test::LoadShape("catmark_nonquads");
+    auto values = scene.cage.fvarChannels.at(0).valueIndices;
+    scene.cage.fvarChannels.clear();
+    std::vector<char> lacks(scene.cage.faceSizes.size(), 0);
+    lacks[0] = 1;
+    std::fill_n(values.begin(), scene.cage.faceSizes[0], -1);
+    scene.AddUVChannel(std::move(values), std::move(lacks));
+    engine::Job job;
+    auto const fine = engine::RefineUniformly(engine::Model::Build(scene), {.levels = 1}, job);
+    // The children of face 0 come first, one per corner.
+    for (Index face = 0; face < fine.cage.GetNumFaces(); ++face)
+        EXPECT_EQ(fine.HasUVs(face), face >= scene.cage.faceSizes[0]) << face;
+}
+
 TEST(Refine, LevelsCompose) {
     for (char const* name :
          {"catmark_cubes_semisharp", "catmark_dart_edgeonly", "catmark_hole_test3"}) {

@@ -35,11 +35,21 @@ TEST(Udim, PlacesBeyondTheRangeHaveNone) {
     EXPECT_FALSE(FindUdimTile(nan, 0.5));
 }
 
-TEST(Udim, BothTokensAreReplacedWhereverTheyStand) {
+TEST(Udim, EveryTokenIsReplacedWhereverItStands) {
     EXPECT_TRUE(engine::HasUdimToken("a.<UDIM>.exr"));
     EXPECT_TRUE(engine::HasUdimToken("{udim}/a.exr"));
     EXPECT_FALSE(engine::HasUdimToken("a.udim.exr"));
     EXPECT_EQ(engine::ReplaceUdimToken("{udim}/a.<UDIM>.exr", 1012), "1012/a.1012.exr");
+    EXPECT_EQ(engine::ReplaceUdimToken("%(UDIM)d.<udim>", 1001), "1001.1001");
+}
+
+// Mudbox calls the first tile u1_v1, Mari u0_v0.
+TEST(Udim, TilesByColumnAndRowCountAsTheirProgramsDo) {
+    EXPECT_EQ(engine::ExpandUdimToken("<UVTILE>", 1001), "u1_v1");
+    EXPECT_EQ(engine::ExpandUdimToken("<uvtile>", 1001), "u0_v0");
+    EXPECT_EQ(engine::ExpandUdimToken("<UVTILE>", 1023), "u3_v3");
+    EXPECT_EQ(engine::ExpandUdimToken("<uvtile>", 1110), "u9_v10");
+    EXPECT_FALSE(engine::ExpandUdimToken("<UVtile>", 1001));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "engine/bake/raster/uv_raster.h"
 
 #include <cmath>
+#include <map>
 
 #include <gtest/gtest.h>
 
@@ -130,6 +131,87 @@ TEST(UVRaster, TheLowestFaceWinsWhereFacesOverlap) {
     auto const covering = CoverAndCheck(scene, 32);
     EXPECT_EQ(covering.numHits, 32u * 32u);  // all of face 0, nothing of face 1
     EXPECT_EQ(Count(covering.strip.overlap), 16u * 16u);
+}
+
+/// Sheets of n x n quads one over another in texture space, from low to high each.
+engine::Scene MakePile(std::vector<std::pair<double, double>> const& sheets, int n) {
+    engine::Scene pile;
+    for (auto const& [low, high] : sheets) {
+        engine::Scene const sheet = MakePlane(n, low, high);
+        Index const first = pile.cage.numVertices;
+        for (double x : sheet.positions) pile.positions.push_back(x + 100.0 * first);
+        pile.uvs.insert(pile.uvs.end(), sheet.uvs.begin(), sheet.uvs.end());
+        pile.cage.numVertices += sheet.cage.numVertices;
+        for (Index size : sheet.cage.faceSizes) pile.cage.faceSizes.push_back(size);
+        for (Index vertex : sheet.cage.faceVertices)
+            pile.cage.faceVertices.push_back(vertex + first);
+    }
+    pile.cage.fvarChannels.push_back({pile.cage.numVertices, pile.cage.faceVertices});
+    return pile;
+}
+
+/// How many texels have so many faces over their centre.
+std::map<int, int> CountFaces(engine::Scene const& scene, int size) {
+    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    eval::LimitSurface const surface(*refiner, 0);
+    UVRaster raster(surface, scene.uvs);
+    TexelStrip strip;
+    strip.countsFaces = true;
+    strip.Reset(0, size, size);
+    TileGrid const grid = TileGrid::OfTile(1001, size, size);
+    for (Index face = 0; face < surface.GetNumFaces(); ++face) {
+        if (surface.HasLimit(face)) raster.Rasterise(face, grid, strip);
+    }
+    std::map<int, int> texels;
+    for (size_t texel = 0; texel < strip.owner.size(); ++texel) ++texels[strip.CountFaces(texel)];
+    return texels;
+}
+
+// Of 64 x 64 texels, 32 x 32 lie under the half sheet, too.
+TEST(UVRaster, CountsEveryFaceOverATexel) {
+    EXPECT_EQ(CountFaces(MakePile({{0, 1}, {0, 1}, {0.25, 0.75}}, 5), 64),
+              (std::map<int, int>{{2, 64 * 64 - 32 * 32}, {3, 32 * 32}}));
+}
+
+// With edges through texel centres (0.5/8 + k/8) each sheet still counts once, be it on one side of
+// an edge or at a vertex, in whatever order the sheets come.
+TEST(UVRaster, CountsASheetOnceAlongItsEdges) {
+    double const low = 2.5 / 8, high = 6.5 / 8;
+    EXPECT_EQ(CountFaces(MakePile({{low, high}}, 4), 8), (std::map<int, int>{{0, 39}, {1, 25}}));
+    for (auto const& sheets :
+         {std::vector{std::pair{0.0, 1.0}, {low, high}}, {{low, high}, {0.0, 1.0}}}) {
+        auto const texels = CountFaces(MakePile(sheets, 4), 8);
+        // Of the 25 texels 9 lie within the small sheet, the others on its border: they count as
+        // half in, half out, all on the same two sides.
+        EXPECT_EQ(texels, (std::map<int, int>{{1, 48}, {2, 16}}));
+    }
+}
+
+TEST(UVRaster, CountsOneFaceEverywhereOnASoundLayout) {
+    for (engine::Scene const& scene : {test::LoadShape("catmark_fvar_bound0"), test::LoadSpot()}) {
+        auto texels = CountFaces(scene, 301);
+        EXPECT_GT(texels[1], 10000);
+        texels.erase(0);
+        EXPECT_EQ(texels.size(), 1u);
+    }
+}
+
+// What is known of overlaps without counting: each texel with the lowest two faces.
+TEST(UVRaster, NamesTheLowestTwoFacesOfAnOverlap) {
+    auto const covering = CoverAndCheck(MakePile({{0, 1}, {0, 1}, {0, 1}}, 1), 16);
+    ASSERT_EQ(covering.strip.overlaps.size(), 256u);
+    for (auto const& [texel, other] : covering.strip.overlaps) {
+        EXPECT_EQ(covering.strip.owner[static_cast<size_t>(texel)], 0);
+        EXPECT_EQ(other, 1);
+    }
+    EXPECT_NEAR(covering.strip.deepestOverlap, 7.5, 1e-6);  // to the border of 16 texels
+}
+
+// Faces of a tenth of a texel, any of which has a centre near its edge now and then.
+TEST(UVRaster, NeighboursAreNoOverlapHoweverSmall) {
+    auto const covering = CoverAndCheck(MakePlane(96, 0.0, 1.0), 9);
+    EXPECT_EQ(covering.numHits, 81u);
+    EXPECT_TRUE(covering.strip.overlaps.empty());
 }
 
 class UVRasterOnMesh : public testing::TestWithParam<char const*> {};

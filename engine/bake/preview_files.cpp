@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/bake/preview_files.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "engine/bake/maps/map_table.h"
+#include "engine/bake/output_names.h"
+#include "engine/images/exr_rows.h"
+#include "engine/images/png.h"
+#include "engine/io/file.h"
+
+namespace limn::engine {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char const *kPicture = ".png", *kLegend = ".legend.png";
+constexpr char const *kOfKey = "limn:of", *kMadeKey = "limn:made";  // remarks of a picture
+
+/// All that decides a picture, in one number.
+std::string Digest(BakeOptions const& options, Attributes const& attributes) {
+    std::string text = options.previewRange ? options.previewRange->GetText() : "";
+    for (auto const& [name, value] : attributes) text += fmt::format("\n{}={}", name, value);
+    return Sha256(text);
+}
+
+bool IsPictureOf(std::string const& picture, std::string const& exrName) {
+    auto const texts = ReadPngTexts(picture);
+    auto const of = texts.find(kOfKey);
+    return of != texts.end() && of->second == exrName;
+}
+
+}  // namespace
+
+PreviewFiles::PreviewFiles(std::string const& path, FileLayout const& file,
+                           BakeOptions const& options, Attributes const& attributes)
+    : _path(path),
+      _stem(fs::path(path).replace_extension().string()),
+      _made(Digest(options, attributes)),
+      _hasLegends(options.hasPreviewLegend) {
+    if (!options.hasPreview) return;
+    int firstChannel = 0;
+    for (MapTraits const& map : file.maps) {
+        Preview preview(map, firstChannel, options.width, options.height, options.previewRange,
+                        options.encoding.value_or(Encoding{}));
+        auto const channels = file.channelNames.begin() + firstChannel;
+        firstChannel += map.GetNumChannels();
+        int const numShown = preview.GetNumShown();
+        _previews.push_back({std::move(preview),
+                             _stem + (file.maps.size() > 1 ? "." + AsFileName(map.name) : ""),
+                             {channels, channels + numShown}});
+    }
+}
+
+bool PreviewFiles::AreUpToDate() const {
+    auto const isThere = [&](std::string const& picture) {
+        auto const texts = ReadPngTexts(picture);
+        auto const made = texts.find(kMadeKey);
+        return made != texts.end() && made->second == _made;
+    };
+    return std::ranges::all_of(_previews, [&](Named const& named) {
+        return isThere(named.name + kPicture) && (!_hasLegends || isThere(named.name + kLegend));
+    });
+}
+
+void PreviewFiles::Add(int firstRow, std::vector<TexelRowView> const& rows) {
+    for (Named& named : _previews) {
+        for (size_t row = 0; row < rows.size(); ++row)
+            named.preview.Add(firstRow + static_cast<int>(row), rows[row]);
+    }
+}
+
+void PreviewFiles::RemoveStale(Model const& model) const {
+    std::vector<std::string> names{_stem};
+    for (std::string const& map : ListFixedMapNames()) names.push_back(_stem + "." + map);
+    for (Primvar const& primvar : model.GetPrimvars())
+        names.push_back(_stem + "." + AsFileName("primvar:" + primvar.name));
+    std::string const exrName = fs::path(_path).filename().string();
+    for (std::string const& name : names) {
+        for (char const* ending : {kPicture, kLegend}) {
+            std::error_code ignored;
+            if (fs::exists(name + ending, ignored) && IsPictureOf(name + ending, exrName))
+                fs::remove(name + ending, ignored);
+        }
+    }
+}
+
+void PreviewFiles::Write(std::string const& of, Job const& job) {
+    PngTexts const texts{{kOfKey, fs::path(_path).filename().string()}, {kMadeKey, _made}};
+    for (Named& named : _previews) {
+        named.preview.Prepare();
+        bool const needsValues = named.preview.NeedsValues();
+        std::optional<ExrRows> rows;
+        if (needsValues) rows.emplace(_path, named.channels);
+        auto const fillRow = [&](int row, uint8_t* rgb) {
+            job.CheckStopped();
+            std::array<float const*, 3> values{};
+            for (size_t c = 0; needsValues && c < named.channels.size(); ++c)
+                values[c] = rows->GetRow(row, c);
+            named.preview.DrawRow(row, values, rgb);
+        };
+        WritePngRows(named.name + kPicture, named.preview.GetWidth(), named.preview.GetHeight(),
+                     fillRow, texts);
+        if (_hasLegends) WritePng(named.name + kLegend, named.preview.DrawLegend(of), texts);
+    }
+}
+
+}  // namespace limn::engine

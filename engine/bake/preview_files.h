@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/bake/bake_options.h"
+#include "engine/bake/layout.h"
+#include "engine/bake/preview.h"
+#include "engine/bake/texel_sink.h"
+#include "engine/scene/job.h"
+
+namespace limn::engine {
+
+/// The pictures beside an EXR file of a bake: NAME.png, or NAME.MAP.png where maps share the file,
+/// with a legend each where that is asked for: NAME.legend.png. Each says in its remarks which file
+/// it was made of, so that one is known that was made of an earlier file of the name.
+class PreviewFiles {
+public:
+    /// \param path        of the EXR file
+    /// \param attributes  its header's
+    PreviewFiles(std::string const& path, FileLayout const& file, BakeOptions const& options,
+                 Attributes const& attributes);
+
+    bool IsAnyWanted() const { return !_previews.empty(); }
+
+    /// Whether all pictures that are wanted are there already, made of the same file.
+    bool AreUpToDate() const;
+
+    /// Takes rows as they are written, with their coverage.
+    void Add(int firstRow, std::vector<TexelRowView> const& rows);
+
+    /// Removes pictures of an earlier file of the name. \param model  whose primvars may have some
+    void RemoveStale(Model const& model) const;
+
+    /// Draws what the finished file holds.
+    ///
+    /// \param of       what the maps are of, for legends
+    /// \throws Error   Io
+    /// \throws Stopped
+    void Write(std::string const& of, Job const& job);
+
+private:
+    struct Named {
+        Preview preview;
+        std::string name;                   // without an ending
+        std::vector<std::string> channels;  // in the EXR file
+    };
+
+    std::string _path, _stem, _made;
+    bool _hasLegends;
+    std::vector<Named> _previews;
+};
+
+}  // namespace limn::engine
