@@ -8,6 +8,17 @@
 
 namespace limn::eval {
 
+namespace {
+
+/// Has no branch per flag, so that compilers take several at once.
+bool IsAnySet(std::span<unsigned const> flags) {
+    unsigned any = 0;
+    for (unsigned const flag : flags) any |= flag;
+    return any != 0;
+}
+
+}  // namespace
+
 SurfaceSampler::SurfaceSampler(FaceTree& tree, Quantity quantity, Orientation orientation,
                                Values values)
     : _tree(tree),
@@ -79,7 +90,7 @@ void SurfaceSampler::EvaluateBlock(Lanes<Real>& lanes, PatchRun const& run, size
     SurfaceFunctions<Real> const& kernel = GetKernel<SurfaceKernel>();
     kernel.evaluate(batch, _quantity, isTriangle);
     EvaluateValues(lanes, batch);
-    if (_quantity == Quantity::Position) return;
+    if (_quantity == Quantity::Position || !IsAnySet({_degenerate.data(), count})) return;
     for (size_t i = 0; i < count; ++i) {
         if (!_degenerate[i]) continue;
         int const sample = run.samples[first + i];

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "eval/surface/surface_sample.h"
@@ -18,6 +19,7 @@ using eval::LimitSurface;
 using eval::SurfacePlace;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Quads, triangles and a pentagon under Catmull-Clark; triangles under Loop.
 std::vector<engine::Scene> MakeScenes() {
@@ -117,7 +119,9 @@ INSTANTIATE_TEST_SUITE_P(Places, PlaceOutside,
                                          Outside{true, -2e-12, 0.5}, Outside{true, 0.5, -2e-12},
                                          Outside{true, 0.5, 0.5 + 2e-12}, Outside{false, kNaN, 0.5},
                                          Outside{false, 0.5, kNaN}, Outside{true, kNaN, 0.5},
-                                         Outside{true, 0.5, kNaN}));
+                                         Outside{true, 0.5, kNaN}, Outside{false, 5.0, 0.5},
+                                         Outside{false, 0.5, -kInfinity},
+                                         Outside{true, kInfinity, -kInfinity}));
 
 TEST_P(PlaceOutside, IsRefused) {
     auto const [isLoop, s, t] = GetParam();
@@ -127,11 +131,26 @@ TEST_P(PlaceOutside, IsRefused) {
               ErrorCode::BadOption);
 }
 
+TEST_P(PlaceOutside, IsFoundWhereverItStandsInAnArray) {
+    auto const [isLoop, badS, badT] = GetParam();
+    for (size_t at = 0; at < 5; ++at) {
+        std::vector<double> s(5, 0.25), t(5, 0.25);
+        s[at] = badS;
+        t[at] = badT;
+        auto const refusal =
+            test::RefusalOf([&, isLoop = isLoop] { eval::CheckInDomain(isLoop, 0, 0, s, t); });
+        EXPECT_TRUE(refusal.starts_with(fmt::format("place {}: ", at))) << refusal;
+    }
+}
+
 TEST(SurfacePlace, RoundingAtADomainsEdgeIsNoReasonToRefuse) {
     for (double slack : {-1e-12, 0.0, 1e-12}) {
         EXPECT_NO_THROW(eval::CheckInDomain(false, {0, 0, std::min(slack, 0.0), 1.0 + slack}));
         EXPECT_NO_THROW(eval::CheckInDomain(true, {0, 0, 0.5, 0.5 + 0.9 * slack}));
     }
+    std::vector<double> const edges{-1e-12, -0.0, 1.0, 1.0 + 1e-12}, zeros(4, 0.0);
+    EXPECT_NO_THROW(eval::CheckInDomain(false, 0, 0, edges, edges));
+    EXPECT_NO_THROW(eval::CheckInDomain(true, 0, 0, edges, zeros));
 }
 
 TEST(SurfacePlace, ARefusalNamesThePlaceTheValueAndTheBound) {
