@@ -16,16 +16,7 @@
 namespace limn::bench {
 namespace {
 
-struct Case {
-    engine::Scene scene;
-    std::unique_ptr<Far::TopologyRefiner> refiner;
-    engine::Model model;
-
-    explicit Case(engine::Scene made)
-        : scene(std::move(made)),
-          refiner(far_ext::CreateRefiner(scene.cage)),
-          model(engine::Model::Build(scene)) {}
-};
+using engine::Model;
 
 struct Image {
     char const* map;
@@ -34,7 +25,7 @@ struct Image {
     engine::ExrCompression compression;
 };
 
-engine::BakeReport BakeImage(Case const& subject, Image const& image, std::string const& path) {
+engine::BakeReport BakeImage(Model const& model, Image const& image, std::string const& path) {
     engine::BakeOptions options;
     options.pattern = path;
     options.maps = {image.map};
@@ -42,14 +33,14 @@ engine::BakeReport BakeImage(Case const& subject, Image const& image, std::strin
     options.isHalf = image.isHalf;
     options.compression = image.compression;
     engine::Job job;
-    return engine::Bake(subject.model, options, job);
+    return engine::Bake(model, options, job);
 }
 
 /// Surface from the topology on, then four samples in every face.
-double EvaluateFaces(Case const& subject) {
+double EvaluateFaces(Model const& model) {
     constexpr std::array<double, 4> kS{0.25, 0.75, 0.25, 0.75}, kT{0.25, 0.25, 0.75, 0.75};
-    eval::LimitSurface const surface(*subject.refiner);
-    eval::FaceTree tree(surface, subject.scene.positions, 3);
+    eval::LimitSurface const surface(model.GetRefiner());
+    eval::FaceTree tree(surface, model.GetPositions(), 3);
     eval::SurfaceSampler sampler(tree, eval::Quantity::Curvature, Orientation::Right);
     double sum = 0.0;
     for (Index face = 0; face < surface.GetNumFaces(); ++face) {
@@ -80,7 +71,7 @@ void PrintExponent(char const* what, std::vector<double> const& sizes,
 void MeasureImages(int numRounds) {
     fmt::print("\nNormal map of a torus of 4096 faces, half, ZIP, one thread\n");
     test::TemporaryFolder const folder;
-    Case const torus(test::MakeTorus(64, 64));
+    Model const torus = Model::Build(test::MakeTorus(64, 64));
     Rounds rounds(numRounds);
     std::vector<double> sizes;
     std::vector<size_t> numbers;
@@ -105,12 +96,10 @@ void MeasureMeshes(int numRounds) {
     fmt::print("\nToruses of 1 k to 1 M faces, one thread\n");
     test::TemporaryFolder const folder;
     Rounds rounds(numRounds);
-    std::vector<std::unique_ptr<Case>> cases;
     std::vector<double> sizes;
     std::vector<size_t> topology, evaluation, bakes;
     for (int n : {32, 100, 316, 1000}) {
-        cases.push_back(std::make_unique<Case>(test::MakeTorus(n, n)));
-        Case const& torus = *cases.back();
+        Model const torus = Model::Build(test::MakeTorus(n, n));
         double const faces = 1.0 * n * n;
         Check(std::abs(EvaluateFaces(torus)) < 4.0 * faces, "normals are longer than one");
         Image const image{"normal", 2 * n, true, engine::ExrCompression::None};
@@ -120,13 +109,13 @@ void MeasureMeshes(int numRounds) {
         sizes.push_back(faces);
         topology.push_back(rounds.Add(
             fmt::format("{} faces: OpenSubdiv's topology", n * n),
-            [&] { far_ext::CreateRefiner(torus.scene.cage); }, faces));
+            [torus] { far_ext::CreateRefiner(torus.GetCage()); }, faces));
         evaluation.push_back(rounds.Add(
             fmt::format("{} faces: surface and 4 samples per face", n * n),
-            [&] { EvaluateFaces(torus); }, faces));
+            [torus] { EvaluateFaces(torus); }, faces));
         bakes.push_back(rounds.Add(
             fmt::format("{} faces: bake of 4 texels per face, uncompressed", n * n),
-            [&, image] { BakeImage(torus, image, folder / "map.exr"); }, faces));
+            [&folder, torus, image] { BakeImage(torus, image, folder / "map.exr"); }, faces));
     }
     rounds.Run("faces");
     auto const print = [&](char const* what, std::vector<size_t> const& numbers,
@@ -149,7 +138,7 @@ void MeasurePeaks() {
     auto const measure = [&](char const* name, auto makeScene, engine::ExrCompression compression) {
         Memory const memory = MeasureMemory([&] {
             OnThreads(2, [&] {
-                BakeImage(Case(makeScene()), {"curvature", 8192, false, compression},
+                BakeImage(Model::Build(makeScene()), {"curvature", 8192, false, compression},
                           folder / "map.exr");
             });
         });

@@ -192,7 +192,11 @@ UVInfo DescribeUVs(Model const& model) {
         }
         at.first += static_cast<size_t>(model.GetCage().faceSizes[at.face]);
     }
-    FindTiles(model, isFlat, info);
+    if (!eval::LimitSurface::FindExcess(model.GetRefiner())) {
+        FindTiles(model, isFlat, info);
+    } else {  // no limit is to be had: the polygons' tiles
+        for (auto const& [tile, faces] : facesOfTile) info.tiles.push_back(tile);
+    }
     info.overlapFaces = CountOverlaps(model, facesOfTile);
     return info;
 }

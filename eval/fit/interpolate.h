@@ -40,7 +40,7 @@ struct InterpolateOptions {
 /// A component on which A is singular (see SingularComponents).
 struct SingularReport {
     Index firstVertex = 0, numVertices = 0;
-    double defect = 0.0;  ///< what no P can reach, over the diagonal of M's bounding box
+    double defect = 0.0;    ///< what no P can reach, over the diagonal of M's bounding box
     bool isSolved = false;  ///< the defect is below the tolerance, the rest solved to what is left
 };
 

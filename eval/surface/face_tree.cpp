@@ -91,8 +91,7 @@ void FaceTree::Recentre(Node& node, double const* parentOrigin) {
     }
 }
 
-FaceTree::Node const& FaceTree::NodeAt(int node) const {
-    if (static_cast<size_t>(node) < _nodes.size()) return _nodes[node];
+void FaceTree::RefuseNode(int node) const {
     throw Error(ErrorCode::BadOption,
                 _face < 0 ? "FaceTree: no face is bound"
                           : fmt::format("node {} does not exist; the tree has {} by now", node,

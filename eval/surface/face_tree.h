@@ -110,7 +110,11 @@ private:
         far_ext::SubDomain domain;  // of the domain it belongs to
     };
 
-    Node const& NodeAt(int node) const;
+    Node const& NodeAt(int node) const {
+        if (static_cast<size_t>(node) < _nodes.size()) return _nodes[node];
+        RefuseNode(node);
+    }
+    [[noreturn]] void RefuseNode(int node) const;
     PatchPoint MakeLeaf(Node const& node) const;
     void GatherPoints(Index face);
     int AddNode(RingNode const* ring, size_t numPoints);

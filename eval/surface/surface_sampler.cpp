@@ -89,7 +89,7 @@ void SurfaceSampler::EvaluateBlock(Lanes<Real>& lanes, PatchRun const& run, size
                                    _degenerate.data()};
     SurfaceFunctions<Real> const& kernel = GetKernel<SurfaceKernel>();
     kernel.evaluate(batch, _quantity, isTriangle);
-    EvaluateValues(lanes, batch);
+    if (_values.count > 0) EvaluateValues(lanes, batch);
     if (_quantity == Quantity::Position || !IsAnySet({_degenerate.data(), count})) return;
     for (size_t i = 0; i < count; ++i) {
         if (!_degenerate[i]) continue;

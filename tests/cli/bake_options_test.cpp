@@ -81,6 +81,7 @@ std::vector<Row> const kRows{
     {"--audit", {"--audit"}, {}, "plain", Effect::None},
     {"--audit-bound", {"--audit", "--audit-bound", "9"}, {}, "plain", Effect::None},
     {"--seam-bound", {"--audit", "--seam-bound", "1e9"}, {}, "plain", Effect::None},
+    {"--weld", {"--weld", "0"}, {}, "plain", Effect::Mesh},
     {"--skip-existing", {"--skip-existing"}, {}, "plain", Effect::None},
     {"--threads", {"--threads", "3"}, {}, "plain", Effect::None},
     {"--precision", {"--precision", "double"}, {}, "plain", Effect::None},

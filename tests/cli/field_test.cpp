@@ -294,7 +294,7 @@ TEST_F(CliFieldBake, WhatIsWrongIsNamed) {
                       "--space", "tangent"}),
                 2, "object or uv");
     ExpectError(Limn({"bake", spot, "-o", folder / "f.exr", "--maps", "normal", "--space", "uv"}),
-                2, "--space uv");
+                2, "--space has no effect on normal");
     std::string const bad = folder.Write("bad.csv", "v0,v1,value\n0,1000,1\n");
     ExpectError(Limn({"bake", spot, "-o", folder / "f.exr", "--maps", "field", "--field", bad}), 3,
                 "vertex 1000 does not exist");
@@ -302,14 +302,15 @@ TEST_F(CliFieldBake, WhatIsWrongIsNamed) {
 
 TEST_F(CliFieldBake, TheSameBytesForAnyNumberOfThreads) {
     for (std::string const threads : {"1", "4"}) {
-        ASSERT_EQ(Limn({"bake", spot, "-o", folder / (threads + ".exr"), "--maps", "field",
+        std::filesystem::create_directory(folder / threads);
+        ASSERT_EQ(Limn({"bake", spot, "-o", folder / (threads + "/f.exr"), "--maps", "field",
                         "--field", WriteGradientOfY(spot), "--size", "128", "--space", "uv",
                         "--normalize", "--samples", "2", "--preview", "--threads", threads})
                       .status,
                   0);
     }
-    EXPECT_EQ(test::ReadText(folder / "1.exr"), test::ReadText(folder / "4.exr"));
-    EXPECT_EQ(test::ReadText(folder / "1.png"), test::ReadText(folder / "4.png"));
+    EXPECT_EQ(test::ReadText(folder / "1/f.exr"), test::ReadText(folder / "4/f.exr"));
+    EXPECT_EQ(test::ReadText(folder / "1/f.png"), test::ReadText(folder / "4/f.png"));
 }
 
 TEST_F(CliFieldBake, AnotherFieldIsNotUpToDate) {
@@ -354,7 +355,9 @@ TEST_F(CliFieldBake, PreviewShowsStreaksAlongTheFlow) {
         for (int x = 1; x < 127; ++x) {
             auto const [r, g, b] = picture.At(x, y);
             EXPECT_TRUE(r == g && g == b);
-            EXPECT_EQ(r > 0, Look("f.exr", {"coverage"}, x, y)[0] > 0.0) << x << " " << y;
+            if (Look("f.exr", {"coverage"}, x, y)[0] > 0.0) {
+                EXPECT_GT(r, 0) << x << " " << y;  // previews are padded beyond
+            }
             auto const flow = Look("f.exr", {"R", "G"}, x, y);
             double const length = std::hypot(flow[0], flow[1]);
             int const dx = static_cast<int>(std::lround(flow[0] / length)),
