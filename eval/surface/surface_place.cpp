@@ -13,19 +13,12 @@ namespace limn::eval {
 
 namespace {
 
-// What is wrong, or nothing.
-
-std::string FindFault(Index face, Index numFaces) {
-    if (face >= 0 && face < numFaces) return {};
-    return fmt::format("face {} does not exist; the surface has {} faces, 0 to {}", face, numFaces,
-                       numFaces - 1);
+bool IsFace(Index face, Index numFaces) {
+    return face >= 0 && face < numFaces;
 }
 
-std::string FindFault(Index face, int domain, int numDomains) {
-    if (numDomains == 0) return fmt::format("face {} has no limit", face);
-    if (domain >= 0 && domain < numDomains) return {};
-    return fmt::format("domain {} does not exist; face {} has domains 0 to {}", domain, face,
-                       numDomains - 1);
+bool IsDomain(int domain, int numDomains) {
+    return domain >= 0 && domain < numDomains;
 }
 
 constexpr double kLow = -kPlaceSlack, kHigh = 1.0 + kPlaceSlack;
@@ -50,18 +43,30 @@ bool AreInDomain(std::span<double const> s, std::span<double const> t) {
     return bits >> 62 == 0;
 }
 
-std::string FindFault(bool isLoop, SurfacePlace const& place) {
-    if (IsInDomain(isLoop, place.s, place.t)) return {};
+// What is wrong; made only where something is, since every sample and face is checked.
+
+std::string DescribeFace(Index face, Index numFaces) {
+    return fmt::format("face {} does not exist; the surface has {} faces, 0 to {}", face, numFaces,
+                       numFaces - 1);
+}
+
+std::string DescribeDomain(Index face, int domain, int numDomains) {
+    if (numDomains == 0) return fmt::format("face {} has no limit", face);
+    return fmt::format("domain {} does not exist; face {} has domains 0 to {}", domain, face,
+                       numDomains - 1);
+}
+
+std::string DescribePlace(SurfacePlace const& place) {
     return fmt::format("({}, {}) lies outside domain {} of face {}", place.s, place.t, place.domain,
                        place.face);
 }
 
-void Refuse(std::string const& fault) {
-    if (!fault.empty()) throw Error(ErrorCode::BadOption, fault);
+[[noreturn]] void Refuse(std::string const& fault) {
+    throw Error(ErrorCode::BadOption, fault);
 }
 
-void Refuse(size_t place, std::string const& fault) {
-    if (!fault.empty()) Refuse(fmt::format("place {}: {}", place, fault));
+[[noreturn]] void Refuse(size_t place, std::string const& fault) {
+    Refuse(fmt::format("place {}: {}", place, fault));
 }
 
 }  // namespace
@@ -86,7 +91,7 @@ int GetChildAt(bool isLoop, double& s, double& t) {
 }
 
 void CheckFace(Index face, Index numFaces) {
-    Refuse(FindFault(face, numFaces));
+    if (!IsFace(face, numFaces)) Refuse(DescribeFace(face, numFaces));
 }
 
 void CheckFace(LimitSurface const& surface, Index face) {
@@ -95,11 +100,11 @@ void CheckFace(LimitSurface const& surface, Index face) {
 }
 
 void CheckDomain(Index face, int domain, int numDomains) {
-    Refuse(FindFault(face, domain, numDomains));
+    if (!IsDomain(domain, numDomains)) Refuse(DescribeDomain(face, domain, numDomains));
 }
 
 void CheckInDomain(bool isLoop, SurfacePlace const& place) {
-    Refuse(FindFault(isLoop, place));
+    if (!IsInDomain(isLoop, place.s, place.t)) Refuse(DescribePlace(place));
 }
 
 void CheckInDomain(bool isLoop, Index face, int domain, std::span<double const> s,
@@ -108,16 +113,19 @@ void CheckInDomain(bool isLoop, Index face, int domain, std::span<double const> 
         Refuse(fmt::format("places: {} values of s and {} of t; each has one of both", s.size(),
                            t.size()));
     if (isLoop ? AreInDomain<true>(s, t) : AreInDomain<false>(s, t)) return;
-    for (size_t i = 0; i < s.size(); ++i)
-        Refuse(i, FindFault(isLoop, SurfacePlace{face, domain, s[i], t[i]}));
+    for (size_t i = 0; i < s.size(); ++i) {
+        if (!IsInDomain(isLoop, s[i], t[i])) Refuse(i, DescribePlace({face, domain, s[i], t[i]}));
+    }
 }
 
 void CheckPlaces(LimitSurface const& surface, std::span<SurfacePlace const> places) {
     for (size_t i = 0; i < places.size(); ++i) {
-        SurfacePlace const& place = places[i];
-        Refuse(i, FindFault(place.face, surface.GetNumFaces()));
-        Refuse(i, FindFault(place.face, place.domain, surface.GetNumDomains(place.face)));
-        Refuse(i, FindFault(surface.IsLoop(), place));
+        auto const& [face, domain, s, t] = places[i];
+        if (!IsFace(face, surface.GetNumFaces()))
+            Refuse(i, DescribeFace(face, surface.GetNumFaces()));
+        int const numDomains = surface.GetNumDomains(face);
+        if (!IsDomain(domain, numDomains)) Refuse(i, DescribeDomain(face, domain, numDomains));
+        if (!IsInDomain(surface.IsLoop(), s, t)) Refuse(i, DescribePlace(places[i]));
     }
 }
 
