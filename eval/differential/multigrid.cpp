@@ -87,7 +87,7 @@ struct ImageOfRow {
 
 /// Lengths of a projected right-hand side, of a residual, and of what rounding the solution may
 /// have put into it.
-struct Misfit {
+struct SolutionMisfit {
     double rightSide, residual, rounding;
 };
 
@@ -122,9 +122,9 @@ struct Multigrid::Implementation {
 
     std::vector<DoubleLanes> FindMeans(std::span<double const> rightSide) const;
     ImageOfRow ApplyByDifferences(Index row) const;
-    Misfit Measure(std::span<double const> rightSide,
-                   std::vector<DoubleLanes> const& meansOfRightSide,
-                   std::span<double const> solution);
+    SolutionMisfit Measure(std::span<double const> rightSide,
+                           std::vector<DoubleLanes> const& meansOfRightSide,
+                           std::span<double const> solution);
     int FindCorrection(double goal, int maxIterations);
     DoubleLanes Advance(DoubleLanes const& step);
     DoubleLanes Precondition(DoubleLanes const& scale);
@@ -177,9 +177,9 @@ ImageOfRow Multigrid::Implementation::ApplyByDifferences(Index row) const {
 }
 
 /// Loads x and forms residual = b - G x with the projected b.
-Misfit Multigrid::Implementation::Measure(std::span<double const> rightSide,
-                                          std::vector<DoubleLanes> const& meansOfRightSide,
-                                          std::span<double const> solution) {
+SolutionMisfit Multigrid::Implementation::Measure(std::span<double const> rightSide,
+                                                  std::vector<DoubleLanes> const& meansOfRightSide,
+                                                  std::span<double const> solution) {
     ForEachRow(GetFinest().GetNumRows(), [&](Index row) { x[row] = ReadRow(solution, row); });
     using Squares = Eigen::Array<double, 4, 3>;
     Squares sum = Squares::Zero();
@@ -300,7 +300,7 @@ MultigridReport Multigrid::Solve(std::span<double const> rightSide, std::span<do
                                  MultigridOptions const& options) {
     auto& self = *_implementation;
     auto const means = self.FindMeans(rightSide);
-    Misfit misfit = self.Measure(rightSide, means, solution);
+    SolutionMisfit misfit = self.Measure(rightSide, means, solution);
     // Where b = 0 relative to where it started.
     double const unit = misfit.rightSide > 0.0 ? misfit.rightSide : misfit.residual;
     MultigridReport report;
