@@ -52,9 +52,9 @@ PreviewFiles::PreviewFiles(std::string const& path, FileLayout const& file,
         auto const channels = file.channelNames.begin() + firstChannel;
         firstChannel += map.GetNumChannels();
         int const numShown = preview.GetNumShown();
-        _previews.push_back({std::move(preview),
-                             _stem + (file.maps.size() > 1 ? "." + AsFileName(map.name) : ""),
-                             {channels, channels + numShown}});
+        std::string name = _stem;
+        if (file.maps.size() > 1) name.append(".").append(AsFileName(map.name));
+        _previews.push_back({std::move(preview), std::move(name), {channels, channels + numShown}});
     }
 }
 
