@@ -85,7 +85,8 @@ private:
 /// Joins places within `tolerance` of each other.
 void JoinNear(far_ext::Points points, std::vector<Index> const& places, double tolerance,
               ParitySets& groups) {
-    PlaceTree const tree(3, Places{points, places});
+    Places const kept{points, places};  // the tree refers to it
+    PlaceTree const tree(3, kept);
     NearPlaces near(tolerance);
     for (Index place : places) {
         near.Clear();
