@@ -21,7 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char const *kPicture = ".png", *kLegend = ".legend.png";
-constexpr char const *kOfKey = "limn:of", *kMadeKey = "limn:made";  // remarks of a picture
+// Remarks of a picture: what it was made by, and of which layer where maps share a file. No names
+// of files, so that the same picture has the same bytes wherever it lies.
+constexpr char const *kMadeKey = "limn:made", *kLayerKey = "limn:layer";
 
 /// All that decides a picture, in one number.
 std::string Digest(BakeOptions const& options, Attributes const& attributes) {
@@ -30,10 +32,10 @@ std::string Digest(BakeOptions const& options, Attributes const& attributes) {
     return Sha256(text);
 }
 
-bool IsPictureOf(std::string const& picture, std::string const& exrName) {
-    auto const texts = ReadPngTexts(picture);
-    auto const of = texts.find(kOfKey);
-    return of != texts.end() && of->second == exrName;
+/// \param layer  empty for a file's only map
+bool IsPictureOf(std::string const& picture, std::string const& layer) {
+    auto texts = ReadPngTexts(picture);
+    return texts.contains(kMadeKey) && texts[kLayerKey] == layer;
 }
 
 }  // namespace
@@ -52,9 +54,15 @@ PreviewFiles::PreviewFiles(std::string const& path, FileLayout const& file,
         auto const channels = file.channelNames.begin() + firstChannel;
         firstChannel += map.GetNumChannels();
         int const numShown = preview.GetNumShown();
-        std::string name = _stem;
-        if (file.maps.size() > 1) name.append(".").append(AsFileName(map.name));
-        _previews.push_back({std::move(preview), std::move(name), {channels, channels + numShown}});
+        std::string name = _stem, layer;
+        if (file.maps.size() > 1) {
+            layer = map.name;
+            name.append(".").append(AsFileName(layer));
+        }
+        _previews.push_back({std::move(preview),
+                             std::move(name),
+                             std::move(layer),
+                             {channels, channels + numShown}});
     }
 }
 
@@ -77,23 +85,23 @@ void PreviewFiles::Add(int firstRow, std::vector<TexelRowView> const& rows) {
 }
 
 void PreviewFiles::RemoveStale(Model const& model) const {
-    std::vector<std::string> names{_stem};
-    for (std::string const& map : ListFixedMapNames()) names.push_back(_stem + "." + map);
-    for (Primvar const& primvar : model.GetPrimvars())
-        names.push_back(_stem + "." + AsFileName("primvar:" + primvar.name));
-    std::string const exrName = fs::path(_path).filename().string();
-    for (std::string const& name : names) {
+    std::vector<std::string> layers = ListFixedMapNames();
+    for (Primvar const& primvar : model.GetPrimvars()) layers.push_back("primvar:" + primvar.name);
+    auto const remove = [](std::string const& name, std::string const& layer) {
         for (char const* ending : {kPicture, kLegend}) {
             std::error_code ignored;
-            if (fs::exists(name + ending, ignored) && IsPictureOf(name + ending, exrName))
+            if (fs::exists(name + ending, ignored) && IsPictureOf(name + ending, layer))
                 fs::remove(name + ending, ignored);
         }
-    }
+    };
+    remove(_stem, "");
+    for (std::string const& layer : layers) remove(_stem + "." + AsFileName(layer), layer);
 }
 
 void PreviewFiles::Write(std::string const& of, Job const& job) {
-    PngTexts const texts{{kOfKey, fs::path(_path).filename().string()}, {kMadeKey, _made}};
     for (Named& named : _previews) {
+        PngTexts texts{{kMadeKey, _made}};
+        if (!named.layer.empty()) texts[kLayerKey] = named.layer;
         named.preview.Prepare();
         bool const needsValues = named.preview.NeedsValues();
         std::optional<ExrRows> rows;

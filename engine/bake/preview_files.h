@@ -13,8 +13,8 @@
 namespace limn::engine {
 
 /// The pictures beside an EXR file of a bake: NAME.png, or NAME.MAP.png where maps share the file,
-/// with a legend each where that is asked for: NAME.legend.png. Each says in its remarks which file
-/// it was made of, so that one is known that was made of an earlier file of the name.
+/// with a legend each where that is asked for: NAME.legend.png. Each says in its remarks that limn
+/// has made it and by which options, so that those of an earlier file of the name are known.
 class PreviewFiles {
 public:
     /// \param path        of the EXR file
@@ -44,6 +44,7 @@ private:
     struct Named {
         Preview preview;
         std::string name;                   // without an ending
+        std::string layer;                  // the map, where maps share the file
         std::vector<std::string> channels;  // in the EXR file
     };
 
