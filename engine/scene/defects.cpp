@@ -148,7 +148,8 @@ private:
         if (doubled.count == 0) return;
         doubled.line = LineOf(doubled.element);
         doubled.message = fmt::format(
-            "{} the vertices of another one, first {} those of {}; leave one of them out",
+            "{} the vertices of another one, first {} those of {}; leave one out unless both are "
+            "meant",
             Count(doubled.count, "face has", "faces have"), _model.NameFace(doubled.element),
             _model.NameFace(firstTwin));
         _defects.push_back(doubled);

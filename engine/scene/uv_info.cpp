@@ -156,9 +156,11 @@ size_t CountOverlaps(Model const& model, FacesOfTile const& facesOfTile) {
     return overlaps.GetCount();
 }
 
-/// The tiles of faces with an area, and how many faces leave UDIM's range.
+/// The tiles of faces with an area, and how many faces leave UDIM's range. None of a mesh whose
+/// limit would take too much, which nobody can bake.
 void FindTiles(Model const& model, std::vector<char> const& isFlat, UVInfo& info) {
     constexpr int kSize = 2048;  // as a bake has it that is not told otherwise
+    if (eval::LimitSurface::FindExcess(model.GetRefiner())) return;
     eval::LimitSurface const surface(model.GetRefiner(), 0);
     TextureTiles tiles(surface, model.GetUVs(), kSize, kSize);
     for (Index face = 0; face < surface.GetNumFaces(); ++face) {

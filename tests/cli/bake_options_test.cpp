@@ -74,6 +74,7 @@ std::vector<Row> const kRows{
     {"--boundary", {"--boundary", "edge-only"}, {}, "open", Effect::Mesh},
     {"--creases", {"--creases", "chaikin"}, {}, "creased", Effect::Mesh},
     {"--triangles", {"--triangles", "smooth"}, {}, "triangles", Effect::Mesh},
+    {"--weld", {"--weld", "0"}, {}, "cut"},
     {"--tiles", {"--tiles", "1001"}, {}, "plain", Effect::None},
     {"--preview", {"--preview"}, {}, "plain", Effect::None},
     {"--preview-legend", {"--preview", "--preview-legend"}, {}, "plain", Effect::None},
@@ -141,18 +142,21 @@ protected:
                 0);
             folder.Write(path.substr(path.rfind('/') + 1), test::ReadText(folder / "x.edges.csv"));
         }
-        return {{"MESH", mesh},
-                {"MOVED", moved},
-                {"FIELD", field},
-                {"OTHER_FIELD", other},
-                {"REPORT", folder / "r.json"}};
+        // Two quads at an angle whose common edge each has for itself.
+        std::string const cut =
+            folder.Write("cut.obj",
+                         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 2 0 1\nv 2 1 1\nv 1 1 0\n"
+                         "vt 0 0\nvt .4 0\nvt .4 1\nvt 0 1\nvt .6 0\nvt 1 0\nvt 1 1\nvt .6 1\n"
+                         "f 1/1 2/2 3/3 4/4\nf 5/5 6/6 7/7 8/8\n");
+        return {{"MESH", mesh},   {"CUT", cut},           {"MOVED", moved},
+                {"FIELD", field}, {"OTHER_FIELD", other}, {"REPORT", folder / "r.json"}};
     }
 
     std::string FindMesh(std::string const& name) const {
         if (name == "open") return Shape("catmark_edgecorner");
         if (name == "creased") return Shape("catmark_torus_creases0");
         if (name == "triangles") return Shape("catmark_pyramid");
-        return files.at("MESH");
+        return files.at(name == "cut" ? "CUT" : "MESH");
     }
 
     /// The file that a bake with these words makes.

@@ -369,8 +369,8 @@ TEST(MeshInfo, FacesThatStandTwiceAreNamedWithTheirTwins) {
     EXPECT_EQ(FindDefect(info, "doubled_face")->element, 6);
     EXPECT_EQ(
         FindDefect(info, "doubled_face")->message,
-        "3 faces have the vertices of another one, first face 6 those of face 2; leave one of "
-        "them out");
+        "3 faces have the vertices of another one, first face 6 those of face 2; leave one out "
+        "unless both are meant");
 }
 
 TEST(MeshInfo, FacesThatShareVerticesWithoutBeingTheSameAreNotDoubled) {
