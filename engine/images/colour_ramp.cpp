@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -66,7 +67,7 @@ std::string ColourRamp::GetText() const {
     std::string text;
     for (Colour const& colour : _colours) {
         auto const byte = [&](size_t c) {
-            return static_cast<int>(std::clamp(colour[c], 0.0, 1.0) * 255.0 + 0.5);
+            return static_cast<int>(std::lround(std::clamp(colour[c], 0.0, 1.0) * 255.0));
         };
         text += fmt::format("{}#{:02x}{:02x}{:02x}", text.empty() ? "" : ",", byte(0), byte(1),
                             byte(2));

@@ -61,7 +61,6 @@ far_ext::Bisection StartBisection(Model const& model, bool keepsCreases) {
 SmoothLevels::SmoothLevels(Model const& model, int numLevels, SmoothRefinement refinement,
                            bool keepsCreases)
     : _model(model),
-      _refinement(refinement),
       _keepsCreases(keepsCreases),
       _uvs(model.GetUVs()),
       _primvars(model.GetPrimvars()) {

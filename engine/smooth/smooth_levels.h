@@ -48,7 +48,6 @@ private:
     Scene MakeBisectedScene() const;
 
     Model const& _model;
-    SmoothRefinement _refinement;
     bool _keepsCreases;
     int _level = 0;
     far_ext::CascadeMesh _mesh;

@@ -161,11 +161,11 @@ TEST_F(CliSmooth, ReportTellsOfEachLevel) {
 }
 
 TEST_F(CliSmooth, TheSameBytesForAnyNumberOfThreads) {
-    std::string const edges = folder.Write("edges.csv", "v0,v1,width\n0,1,0.1\n");
+    std::string const edges = folder.Write("edges.csv", "v0,v1,width\n5,13,0.1\n");
     for (Words const& options :
          {Words{"--solver", "cg", "--precision", "double"}, Words{"--solver", "jacobi"},
           Words{"--solver", "jacobi", "--precision", "double", "--local"},
-          Words{"--solver", "exact"}, Words{"--preserve-volume"}}) {
+          Words{"--solver", "exact"}, Words{"--preserve-volume"}, Words{"--width-edges", edges}}) {
         for (std::string const threads : {"1", "2", "4"}) {
             ASSERT_EQ(Limn(Words{"smooth", spot, "-o", folder / (threads + ".ply"), "--levels", "4",
                                  "--threads", threads, "--picture", folder / (threads + ".png")} +

@@ -15,7 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::ListFiles;
-using test::ReadText;
 
 fs::path const& kRoot = test::kSourceRoot;
 

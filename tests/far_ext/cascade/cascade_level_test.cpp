@@ -21,7 +21,6 @@ using far_ext::BuildCascadeLevel;
 using far_ext::CascadeLevel;
 using far_ext::CascadeMesh;
 using far_ext::MakeCascadeMesh;
-using test::PointAt;
 
 /// Calls check(refiner, k, mesh, level) for the first two levels of all meshes.
 template <class Check>
@@ -118,15 +117,10 @@ TEST(CascadeLevel, TagsSayWhatKindARowIs) {
                 }
                 bool const isBoundary = topology.IsVertexBoundary(vertex),
                            isCorner = topology.GetVertexSharpness(vertex) > 0.0f;
-                size_t kind = 0;
-                if (topology.GetVertexFaces(vertex).size() == 0)
-                    kind = 3;
-                else if (isBoundary)
-                    kind = rule == BoundaryRule::Fixed || !sharp.empty() ? 3 : 1;
-                else if (isCorner || sharp.size() > 2)
-                    kind = 3;
-                else if (sharp.size() == 2)
-                    kind = 2;
+                bool const isFixed = topology.GetVertexFaces(vertex).size() == 0 ||
+                                     (isBoundary ? rule == BoundaryRule::Fixed || !sharp.empty()
+                                                 : isCorner || sharp.size() > 2);
+                size_t const kind = isFixed ? 3 : isBoundary ? 1 : sharp.size() == 2 ? 2 : 0;
                 size_t const found = row < level.numClosed     ? 0
                                      : row < level.numSurface  ? 1
                                      : row < level.numUnknowns ? 2
