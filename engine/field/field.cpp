@@ -121,7 +121,8 @@ Design DesignControlForm(Model const& model, FieldOptions const& options, Job& j
     }
     if (options.edges) AddTo(form, *options.edges);
     if (!options.wanted.empty())
-        AddTo(form, eval::MatchVectors(level, model.GetPositions(), options.wanted));
+        AddTo(form, eval::MatchVectors(model.GetRefiner(), model.GetPositions(), options.wanted,
+                                       [&] { job.CheckStopped(); }));
 
     job.CheckStopped();
     auto const parts = designer.Decompose(form);

@@ -26,8 +26,12 @@ struct FieldIndices {
     double sum = 0.0;   ///< the Euler characteristic, by the theorem of Poincare and Hopf
 };
 
-/// \param form  per edge; 0 counts as positive, on boundary edges as their face runs, so that every
-///              edge has a direction and a field straight across a boundary is not singular there
+/// Signs     0 counts as positive. Two kinds of edges do not go by their sign, for what flows along
+///           them is rounding or next to it: those of a boundary that the field crosses at a right
+///           angle run as their face, so that it is not singular there; and where the field turns
+///           round a vertex, the vertex' edges leave it, so that it is the middle of one vortex and
+///           not a saddle among several.
+/// \param form  per edge
 /// Source  [Gortler06]; [Forms 10]
 FieldIndices FindFieldIndices(Far::TopologyLevel const& level, std::span<double const> form);
 

@@ -262,21 +262,27 @@ VertexCovectors::VertexCovectors(Far::TopologyRefiner const& refiner, int level)
     }
 }
 
-VertexCovector VertexCovectors::Find(Index vertex, std::span<double const> form,
-                                     std::span<double const> positions) const {
+void VertexCovectors::Check(Index vertex, std::span<double const> positions) const {
     if (vertex < 0 || vertex >= _level.GetNumVertices()) {
         throw Error(ErrorCode::BadOption,
                     fmt::format("vertex {} does not exist; the level has {} vertices, 0 to {}",
                                 vertex, _level.GetNumVertices(), _level.GetNumVertices() - 1));
     }
-    far_ext::CheckLength("form", form, _level.GetNumEdges(), "edges", 1);
     far_ext::CheckPoints(positions, _level.GetNumVertices());
+}
+
+/// Finds the tangents at a vertex, and calls addEdge(a, edge, weight) for the edges of which
+/// w(T_a) is the weighted sum.
+template <class AddEdge>
+std::array<Eigen::Vector3d, 2> VertexCovectors::Walk(Index vertex,
+                                                     std::span<double const> positions,
+                                                     AddEdge addEdge) const {
+    std::array<Eigen::Vector3d, 2> tangents{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
     int const numSides = _refiner.GetSchemeType() == Sdc::SCHEME_LOOP ? 3 : 4;
     auto const faces = _level.GetVertexFaces(vertex);
     auto const corners = _level.GetVertexFaceLocalIndices(vertex);
     auto const edges = _level.GetVertexEdges(vertex);
-    VertexCovector result{{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}, {}};
-    if (faces.size() == 0) return result;
+    if (faces.size() == 0) return tangents;
     Rows own;
     bool const isPlain = far_ext::IsSmoothInterior(_level, vertex);
     if (!isPlain)
@@ -285,29 +291,58 @@ VertexCovector VertexCovectors::Find(Index vertex, std::span<double const> form,
     Rows const& rows = isPlain ? *_plainRows[faces.size()] : own;
 
     far_ext::Points const points(positions);
-    for (size_t a = 0; a < 2; ++a) result.tangents[a] = rows[a].vertex * points[vertex];
+    for (size_t a = 0; a < 2; ++a) tangents[a] = rows[a].vertex * points[vertex];
     for (int i = 0; i < edges.size(); ++i) {
         auto const ends = _level.GetEdgeVertices(edges[i]);
         Eigen::Vector3d const end = points[ends[0] == vertex ? ends[1] : ends[0]];
-        double const value = far_ext::GetSignFrom(_level, edges[i], vertex) * form[edges[i]];
+        double const sign = far_ext::GetSignFrom(_level, edges[i], vertex);
         for (size_t a = 0; a < 2; ++a) {
-            result.tangents[a] += rows[a].ends[i] * end;
-            result.values[a] += rows[a].edges[i] * value;
+            tangents[a] += rows[a].ends[i] * end;
+            addEdge(a, edges[i], rows[a].edges[i] * sign);
         }
     }
     size_t place = edges.size();
     for (int j = 0; j < faces.size(); ++j) {
         for (int m = 1; m < numSides - 1; ++m, ++place) {
             auto const side = far_ext::GetFaceSide(_level, faces[j], (corners[j] + m) % numSides);
-            for (size_t a = 0; a < 2; ++a)
-                result.values[a] += rows[a].edges[place] * side.sign * form[side.edge];
+            for (size_t a = 0; a < 2; ++a) addEdge(a, side.edge, rows[a].edges[place] * side.sign);
         }
         if (numSides == 3) continue;
         Eigen::Vector3d const corner =
             points[_level.GetFaceVertices(faces[j])[(corners[j] + 2) % 4]];
-        for (size_t a = 0; a < 2; ++a) result.tangents[a] += rows[a].corners[j] * corner;
+        for (size_t a = 0; a < 2; ++a) tangents[a] += rows[a].corners[j] * corner;
     }
+    return tangents;
+}
+
+VertexCovector VertexCovectors::Find(Index vertex, std::span<double const> form,
+                                     std::span<double const> positions) const {
+    Check(vertex, positions);
+    far_ext::CheckLength("form", form, _level.GetNumEdges(), "edges", 1);
+    VertexCovector result;
+    result.tangents = Walk(vertex, positions, [&](size_t a, Index edge, double weight) {
+        result.values[a] += weight * form[edge];
+    });
     return result;
+}
+
+std::array<far_ext::WeightRow, 3> VertexCovectors::FindVectorRows(
+    Index vertex, std::span<double const> positions) const {
+    Check(vertex, positions);
+    VertexCovector covector;
+    std::array<far_ext::WeightRow, 2> values;
+    covector.tangents = Walk(vertex, positions, [&](size_t a, Index edge, double weight) {
+        values[a].Add(edge, weight);
+    });
+    std::array<far_ext::WeightRow, 3> rows;
+    for (size_t a = 0; a < 2; ++a) {  // V is linear in both values
+        covector.values = {};
+        covector.values[a] = 1.0;
+        Eigen::Vector3d const unit = covector.GetVector();
+        for (size_t axis = 0; axis < 3; ++axis)
+            rows[axis].AddWithWeight(values[a], unit[static_cast<Eigen::Index>(axis)]);
+    }
+    return rows;
 }
 
 }  // namespace limn::eval

@@ -10,6 +10,7 @@
 #include <opensubdiv/far/topologyRefiner.h>
 
 #include "far_ext/forms/form_wheel.h"
+#include "far_ext/rows/sparse_rows.h"
 
 namespace limn::eval {
 
@@ -49,6 +50,10 @@ public:
     VertexCovector Find(Index vertex, std::span<double const> form,
                         std::span<double const> positions) const;
 
+    /// The vector at a vertex as weights over the edges of the level: x, y and z.
+    std::array<far_ext::WeightRow, 3> FindVectorRows(Index vertex,
+                                                     std::span<double const> positions) const;
+
 private:
     /// The weights behind T and w(T) at a vertex.
     struct Row {
@@ -60,6 +65,10 @@ private:
     class RowMaker;
 
     static Rows MakeRows(Sdc::SchemeType scheme, far_ext::Wheel const& wheel);
+    void Check(Index vertex, std::span<double const> positions) const;
+    template <class AddEdge>
+    std::array<Eigen::Vector3d, 2> Walk(Index vertex, std::span<double const> positions,
+                                        AddEdge addEdge) const;
 
     Far::TopologyRefiner const& _refiner;
     Far::TopologyLevel _level;

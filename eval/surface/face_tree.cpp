@@ -19,7 +19,8 @@ FaceTree::FaceTree(LimitSurface const& surface, std::vector<Values> parts)
       _parts(std::move(parts)),
       _length(0),
       _isLoop(surface.IsLoop()),
-      _gatherer(surface._refiner.GetLevel(0), surface._channel) {
+      _gatherer(surface._refiner.GetLevel(0), surface._refiner.GetSchemeOptions(),
+                surface._channel) {
     for (Values const& part : _parts) {
         surface.CheckValues(part.data, part.length);
         _length += part.length;

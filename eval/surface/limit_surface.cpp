@@ -107,8 +107,10 @@ void LimitSurface::Classify() {
         far_ext::FaceRing ring;
         std::vector<Index> points;
     };
-    tbb::enumerable_thread_specific<Scratch> scratchOfThread(
-        [&] { return Scratch{far_ext::FaceRingGatherer(level, _channel), {}, {}}; });
+    tbb::enumerable_thread_specific<Scratch> scratchOfThread([&] {
+        return Scratch{
+            far_ext::FaceRingGatherer(level, _refiner.GetSchemeOptions(), _channel), {}, {}};
+    });
     constexpr Index kFacesPerBlock = 1024;
     ForEachBlock(level.GetNumFaces(), kFacesPerBlock, [&](Index begin, Index end) {
         auto& [gatherer, ring, points] = scratchOfThread.local();

@@ -176,7 +176,8 @@ void LimitRowBuilder::BuildCurve(Index vertex, LimitRow& row) const {
 /// By the ring of any face at the vertex that is no hole: they all have the same limit there. Rings
 /// repeat (a semi-sharp crease has one after another), so each is refined once [Limit 3].
 void LimitRowBuilder::BuildOther(Index vertex, LimitRow& row) {
-    if (!_gatherer) _gatherer = std::make_unique<FaceRingGatherer>(_level, -1);
+    if (!_gatherer)
+        _gatherer = std::make_unique<FaceRingGatherer>(_level, _refiner.GetSchemeOptions(), -1);
     auto const faces = _level.GetVertexFaces(vertex);
     auto const found = std::find_if(faces.begin(), faces.end(),
                                     [&](Index face) { return !_level.IsFaceHole(face); });

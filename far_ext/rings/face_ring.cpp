@@ -26,34 +26,75 @@ size_t FaceRing::Hash() const {
     return hash ^ (hash >> 32);
 }
 
-FaceRingGatherer::FaceRingGatherer(Far::TopologyLevel const& level, int channel, Starts starts)
-    : _level(level), _channel(channel), _starts(starts) {
+namespace {
+
+/// Where the member that was numbered first stands; those without a number (-1) come last.
+template <class NumberOf>
+int FindFirstNumbered(int size, NumberOf numberOf) {
+    int first = 0;
+    for (int i = 1; i < size; ++i) {
+        if (static_cast<unsigned>(numberOf(i)) < static_cast<unsigned>(numberOf(first))) first = i;
+    }
+    return first;
+}
+
+}  // namespace
+
+FaceRingGatherer::FaceRingGatherer(Far::TopologyLevel const& level, Sdc::Options options,
+                                   int channel, Starts starts)
+    : _level(level),
+      _channel(channel),
+      _starts(starts),
+      _isChaikin(options.GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN) {
     _faces.Resize(level.GetNumFaces());
     _vertices.Resize(level.GetNumVertices());
     _edges.Resize(level.GetNumEdges());
     if (channel >= 0) _values.Resize(level.GetNumFVarValues(channel));
 }
 
+/// Starting after the `first` of them.
+void FaceRingGatherer::NumberFacesRound(Index vertex, int first) {
+    auto const around = _level.GetVertexFaces(vertex);
+    for (int i = 1; i < around.size(); ++i) _faces.Add(around[(first + i) % around.size()]);
+}
+
 void FaceRingGatherer::NumberFaces(Index face) {
     _faces.Add(face);
-    for (Index vertex : _level.GetFaceVertices(face)) {
-        auto const around = _level.GetVertexFaces(vertex);
-        int const start = around.FindIndex(face);
-        for (int i = 1; i < around.size(); ++i) _faces.Add(around[(start + i) % around.size()]);
+    for (Index vertex : _level.GetFaceVertices(face))
+        NumberFacesRound(vertex, _level.GetVertexFaces(vertex).FindIndex(face));
+    if (!_isChaikin) return;
+    FindCreaseEnds(face);
+    for (Index end : _creaseEnds) {
+        auto const around = _level.GetVertexFaces(end);
+        NumberFacesRound(
+            end, FindFirstNumbered(around.size(), [&](int i) { return _faces[around[i]]; }));
+    }
+}
+
+/// In an order that depends on the face alone: alike surroundings get equal rings.
+void FaceRingGatherer::FindCreaseEnds(Index face) {
+    _creaseEnds.clear();
+    auto const corners = _level.GetFaceVertices(face);
+    for (int corner = 0; corner < corners.size(); ++corner) {
+        auto const edges = _level.GetVertexEdges(corners[corner]);
+        int const start = edges.FindIndex(_level.GetFaceEdges(face)[corner]);
+        for (int i = 0; i < edges.size(); ++i) {
+            Index const edge = edges[(start + i) % edges.size()];
+            if (!Sdc::Crease::IsSemiSharp(_level.GetEdgeSharpness(edge))) continue;
+            for (Index end : _level.GetEdgeVertices(edge)) {
+                bool const isNew =
+                    corners.FindIndex(end) < 0 &&
+                    std::find(_creaseEnds.begin(), _creaseEnds.end(), end) == _creaseEnds.end();
+                if (isNew) _creaseEnds.push_back(end);
+            }
+        }
     }
 }
 
 /// The corner a face of the ring starts with.
 int FaceRingGatherer::FindStart(Far::ConstIndexArray vertices) const {
     if (_starts == Starts::AsInLevel) return 0;
-    int start = 0;
-    auto const rank = [&](int corner) {
-        return static_cast<unsigned>(_vertices[vertices[corner]]);
-    };  // -1 last
-    for (int i = 1; i < vertices.size(); ++i) {
-        if (rank(i) < rank(start)) start = i;
-    }
-    return start;
+    return FindFirstNumbered(vertices.size(), [&](int i) { return _vertices[vertices[i]]; });
 }
 
 void FaceRingGatherer::GatherPoints(Index face, std::vector<Index>& points) {
@@ -69,16 +110,28 @@ void FaceRingGatherer::GatherPoints(Index face, std::vector<Index>& points) {
     _faces.Reset();
 }
 
-void FaceRingGatherer::MakeCorner(Index vertex, Index face, FaceRing::Corner& corner) const {
+/// What the level says about a vertex, and the sharpness of its edges.
+void FaceRingGatherer::FillCorner(Index vertex, FaceRing::Corner& corner, FaceRing& ring) const {
+    corner.vertex = _vertices[vertex];
     corner.faces.clear();
     corner.edges.clear();
     corner.sharpness = _level.GetVertexSharpness(vertex);
     corner.isNonManifold = _level.IsVertexNonManifold(vertex);
     for (Index around : _level.GetVertexFaces(vertex)) corner.faces.push_back(_faces[around]);
-    for (Index around : _level.GetVertexEdges(vertex)) corner.edges.push_back(_edges[around]);
+    int numSemiSharp = 0;
+    for (Index around : _level.GetVertexEdges(vertex)) {
+        corner.edges.push_back(_edges[around]);
+        FaceRing::Edge& edge = ring.edges[_edges[around]];
+        edge.sharpness = _level.GetEdgeSharpness(around);
+        edge.isNonManifold = _level.IsEdgeNonManifold(around);
+        numSemiSharp += Sdc::Crease::IsSemiSharp(edge.sharpness);
+    }
+    // Chaikin's averages over more than two edges are float sums in their order, which has to be
+    // the level's: rounded in another one, two faces would not see the same sharpness.
+    bool const keepsOrder = _isChaikin && numSemiSharp > 2;
     // Round an interior vertex the order may start anywhere; starting at the face makes it unique.
-    if (!corner.isNonManifold && corner.faces.size() == corner.edges.size()) {
-        auto const start = std::find(corner.faces.begin(), corner.faces.end(), _faces[face]);
+    if (!keepsOrder && !corner.isNonManifold && corner.faces.size() == corner.edges.size()) {
+        auto const start = std::min_element(corner.faces.begin(), corner.faces.end());
         std::rotate(corner.edges.begin(), corner.edges.begin() + (start - corner.faces.begin()),
                     corner.edges.end());
         std::rotate(corner.faces.begin(), start, corner.faces.end());
@@ -90,8 +143,9 @@ void FaceRingGatherer::Gather(Index face, FaceRing& ring, std::vector<Index>& po
     for (auto* list : {&ring.faceVertices, &ring.faceEdges, &ring.valueIndices}) list->clear();
     ring.faceSizes.clear();
     ring.edges.clear();
-    ring.corners.resize(_level.GetFaceVertices(face).size());
     NumberFaces(face);
+    ring.corners.resize(_level.GetFaceVertices(face).size());
+    ring.creaseEnds.resize(_creaseEnds.size());
     for (Index inRing : _faces.GetMembers()) {
         auto const vertices = _level.GetFaceVertices(inRing);
         int const size = vertices.size(), start = inRing == face ? 0 : FindStart(vertices);
@@ -115,15 +169,9 @@ void FaceRingGatherer::Gather(Index face, FaceRing& ring, std::vector<Index>& po
         if (_starts == Starts::Canonical && a > b) std::swap(a, b);
         ring.edges.push_back({{a, b}});
     }
-    auto corner = ring.corners.begin();
-    for (Index vertex : _level.GetFaceVertices(face)) {
-        MakeCorner(vertex, face, *corner++);
-        for (Index edge : _level.GetVertexEdges(vertex)) {
-            FaceRing::Edge& local = ring.edges[_edges[edge]];
-            local.sharpness = _level.GetEdgeSharpness(edge);
-            local.isNonManifold = _level.IsEdgeNonManifold(edge);
-        }
-    }
+    auto corner = ring.corners.begin(), end = ring.creaseEnds.begin();
+    for (Index vertex : _level.GetFaceVertices(face)) FillCorner(vertex, *corner++, ring);
+    for (Index vertex : _creaseEnds) FillCorner(vertex, *end++, ring);
     _faces.Reset();
     _vertices.Reset();
     _edges.Reset();
@@ -156,12 +204,14 @@ struct RingTopology {
             vertexEdges[a].push_back(edge);
             vertexEdges[b].push_back(edge);
         }
-        for (size_t i = 0; i < ring.corners.size(); ++i) {
-            Index const vertex = ring.faceVertices[i];
-            vertexFaces[vertex] = ring.corners[i].faces;
-            vertexEdges[vertex] = ring.corners[i].edges;
-            isNonManifold[vertex] = ring.corners[i].isNonManifold;
-        }
+        for (FaceRing::Corner const& known : ring.corners) SetSurroundings(known);
+        for (FaceRing::Corner const& known : ring.creaseEnds) SetSurroundings(known);
+    }
+
+    void SetSurroundings(FaceRing::Corner const& of) {
+        vertexFaces[of.vertex] = of.faces;
+        vertexEdges[of.vertex] = of.edges;
+        isNonManifold[of.vertex] = of.isNonManifold;
     }
 };
 
@@ -242,8 +292,8 @@ bool TopologyRefinerFactory<RingTopology>::assignComponentTags(TopologyRefiner& 
     for (size_t edge = 0; edge < ring.edges.size(); ++edge) {
         setBaseEdgeSharpness(refiner, static_cast<Index>(edge), ring.edges[edge].sharpness);
     }
-    for (size_t i = 0; i < ring.corners.size(); ++i) {
-        setBaseVertexSharpness(refiner, ring.faceVertices[i], ring.corners[i].sharpness);
+    for (auto const& corner : ring.corners) {
+        setBaseVertexSharpness(refiner, corner.vertex, corner.sharpness);
     }
     return true;
 }

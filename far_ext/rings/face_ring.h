@@ -14,15 +14,19 @@ namespace limn::far_ext {
 /// A face with all faces that share a vertex with it, renumbered locally: everything its limit
 /// surface depends on. Two faces with equal rings have equal subdivision matrices.
 ///
+/// Creases  Chaikin's rule takes the sharpness of an edge's half from all edges at that end. So
+///          where a semi-sharp edge leaves the face, the faces round its far end belong to the ring
+///          as well: whether the new vertex on the edge is smooth depends on them.
 /// Order    Face 0 is the face itself, then the faces round its corner 0, 1, ..., each time
-///          starting after the face, so that alike surroundings get equal rings. Vertices, edges
-///          and values are numbered by first appearance; 0..size-1 are the face's own corners
-///          unless it repeats one.
+///          starting after the face, so that alike surroundings get equal rings; round crease ends
+///          likewise, after the face that came first. Vertices, edges and values are numbered by
+///          first appearance; 0..size-1 are the face's own corners unless it repeats one.
 /// Edges    are told explicitly: at a vertex of valence 2, or beside a face that repeats a corner,
 ///          two edges can join the same two vertices, and face lists alone would merge them.
 struct FaceRing {
-    /// What the level says about one corner of the face: all faces and edges round it, in order.
+    /// What the level says about a vertex whose faces are all here: these and the edges, in order.
     struct Corner {
+        Index vertex = -1;
         std::vector<Index> faces, edges;
         float sharpness = 0.0f;  ///< OpenSubdiv's effective value, boundary rules included
         bool isNonManifold = false;
@@ -31,7 +35,7 @@ struct FaceRing {
     };
     struct Edge {
         Index vertices[2] = {-1, -1};
-        float sharpness = 0.0f;  ///< known (and needed) at the face's corners only
+        float sharpness = 0.0f;  ///< known (and needed) at corners and crease ends only
         bool isNonManifold = false;
 
         bool operator==(Edge const&) const = default;
@@ -42,7 +46,8 @@ struct FaceRing {
     std::vector<Index> faceEdges;     ///< local edges: entry i joins corners i and i + 1
     std::vector<Index> valueIndices;  ///< local values per corner; empty for vertex topology
     std::vector<Edge> edges;
-    std::vector<Corner> corners;  ///< of face 0
+    std::vector<Corner> corners;     ///< of face 0
+    std::vector<Corner> creaseEnds;  ///< far ends of semi-sharp edges from these (Chaikin only)
     Index numVertices = 0;
     Index numPoints = 0;  ///< vertices, or values with face-varying topology
 
@@ -61,8 +66,9 @@ public:
     enum class Starts { AsInLevel, Canonical };
 
     /// \param level    topology with all relations (a base level, or a refined one asked for them)
+    /// \param options  by which the level is subdivided
     /// \param channel  face-varying channel, or -1 for vertices
-    FaceRingGatherer(Far::TopologyLevel const& level, int channel,
+    FaceRingGatherer(Far::TopologyLevel const& level, Sdc::Options options, int channel,
                      Starts starts = Starts::AsInLevel);
 
     /// The ring of a face, and for each of its points the level's vertex (or value) index.
@@ -95,13 +101,17 @@ private:
     };
 
     void NumberFaces(Index face);
+    void NumberFacesRound(Index vertex, int first);
+    void FindCreaseEnds(Index face);
     int FindStart(Far::ConstIndexArray vertices) const;
-    void MakeCorner(Index vertex, Index face, FaceRing::Corner& corner) const;
+    void FillCorner(Index vertex, FaceRing::Corner& corner, FaceRing& ring) const;
 
     Far::TopologyLevel _level;  // a view
     int _channel;
     Starts _starts;
+    bool _isChaikin;
     Numbering _faces, _vertices, _edges, _values;
+    std::vector<Index> _creaseEnds;  // of the face at hand
 };
 
 /// Builds a ring's own refiner, with the boundary rule EDGE_ONLY: the ring's rim adds no sharpness.

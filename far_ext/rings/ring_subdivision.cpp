@@ -403,7 +403,7 @@ RingSubdivision RingSubdivision::Build(FaceRing const& ring, Sdc::SchemeType sch
 
     Level const coarse = refiner->GetLevel(0), fine = refiner->GetLevel(1);
     using Starts = FaceRingGatherer::Starts;
-    FaceRingGatherer gatherer(fine, ring.IsFaceVarying() ? 0 : -1,
+    FaceRingGatherer gatherer(fine, options, ring.IsFaceVarying() ? 0 : -1,
                               use == Use::Limit ? Starts::AsInLevel : Starts::Canonical);
     bool const isLoop = scheme == Sdc::SCHEME_LOOP;
     bool const isSplitInSubFaces = !isLoop && ring.faceSizes[0] != 4;

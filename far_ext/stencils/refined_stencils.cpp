@@ -175,7 +175,8 @@ public:
           _fine(refiner.GetLevel(_depth)),
           _lattices(refiner.GetSchemeType()),
           _weights(refiner, options.mode == Mode::Varying, _lattices),
-          _gatherer(_base, options.mode == Mode::FaceVarying ? options.fvarChannel : -1,
+          _gatherer(_base, refiner.GetSchemeOptions(),
+                    options.mode == Mode::FaceVarying ? options.fvarChannel : -1,
                     FaceRingGatherer::Starts::Canonical),
           _isDone(CountPoints(_fine, options), 0),
           _builder(CountPoints(_fine, options), CountPoints(_base, options), 1) {}

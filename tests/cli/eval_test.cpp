@@ -151,6 +151,18 @@ INSTANTIATE_TEST_SUITE_P(
         BadPlace{"NumberWithATail", "catmark_cube", "0,0.5x,0.5", {}}),
     [](testing::TestParamInfo<BadPlace> const& instance) { return instance.param.name; });
 
+// Chaikin's creases of sharpness 4 and 1.5 meet at the vertex; by OpenSubdiv's uniform refinement,
+// in double, it is at z = -0.0957291014 after 7 levels, whose limit rule then gives -0.0957259623.
+TEST_F(Eval, FacesAtAVertexOfUnequalCreasesHaveOnePoint) {
+    Outcome const outcome =
+        At(test::DataPath("cases/chaikin_4_15.obj"), "9,1,0\n5,1,1\n6,0,1\n10,0,0\n");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    auto const lines = Lines(outcome.out);
+    ASSERT_EQ(lines.size(), 5u);
+    for (size_t i = 1; i < lines.size(); ++i)
+        EXPECT_NEAR(std::stod(Fields(lines[i])[5]), -0.0957259623, 1e-10) << lines[i];
+}
+
 TEST_F(Eval, EmptyLinesDoNotShiftTheLineThatIsNamed) {
     ExpectError(At(Shape("catmark_cube"), "0,0.5,0.5\n\n0,9,9\n"), 3, "line 4");
 }

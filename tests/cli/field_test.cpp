@@ -122,6 +122,32 @@ TEST_F(CliField, HarmonicAndMatchedFields) {
     for (size_t i = 0; i < a.values.size(); ++i) EXPECT_NEAR(a.values[i], b.values[i], 2e-3);
 }
 
+// The mesh file is rounded to float, and with it the tangents that the vectors lie along.
+TEST_F(CliField, VectorsOfADesignedFieldGiveItBack) {
+    ASSERT_EQ(
+        Limn({"field", spot, "-o", folder / "a.obj", "--levels", "1", "--source", "0", "--sink",
+              "100", "--vortex", "40:2", "--vortex", "150:-2", "--report", folder / "r.json"})
+            .status,
+        0);
+    json const designed = Report();
+    EXPECT_EQ(designed["singularities"].size(), 6u);
+    ASSERT_EQ(Limn({"field", folder / "a.obj", "-o", folder / "b.obj", "--levels", "0", "--match",
+                    folder / "a.vectors.csv", "--report", folder / "r.json"})
+                  .status,
+              0);
+    EXPECT_EQ(Report()["singularities"], designed["singularities"]);
+    auto const read = [&](char const* name) {
+        auto const table = engine::ReadNumberTable(folder / name, {{"vertex", "x", "y", "z"}});
+        Eigen::MatrixX3d vectors(table.GetNumRows(), 3);
+        for (size_t row = 0; row < table.GetNumRows(); ++row)
+            vectors.row(row) << table.Get(row, 1), table.Get(row, 2), table.Get(row, 3);
+        return vectors;
+    };
+    Eigen::MatrixX3d const wanted = read("a.vectors.csv"), found = read("b.vectors.csv");
+    ASSERT_EQ(found.rows(), wanted.rows());
+    EXPECT_LT((found - wanted).norm(), 1e-6 * wanted.norm());
+}
+
 TEST_F(CliField, TheSameBytesForAnyNumberOfThreads) {
     for (char const* threads : {"1", "4"}) {
         ASSERT_EQ(Limn({"field", spot, "-o", folder / (std::string(threads) + ".obj"), "--levels",

@@ -24,7 +24,7 @@ void ForEachRing(Visit visit) {
     for (std::string const& name : test::ListShapes()) {
         engine::Scene scene = test::LoadShape(name);
         auto const refiner = far_ext::CreateRefiner(scene.cage);
-        FaceRingGatherer gatherer(refiner->GetLevel(0), -1);
+        FaceRingGatherer gatherer(refiner->GetLevel(0), scene.cage.options, -1);
         FaceRing ring;
         std::vector<Index> points;
         Index const step = std::max<Index>(1, scene.cage.GetNumFaces() / 40);
@@ -99,7 +99,7 @@ TEST(RingSubdivision, ExtraordinaryCornersBecomeStationary) {
     for (int valence : {3, 5, 8, 12}) {
         engine::Scene const scene = test::MakeFan(valence, Sdc::SCHEME_CATMARK, 0.1, 0.1);
         auto const refiner = far_ext::CreateRefiner(scene.cage);
-        FaceRingGatherer gatherer(refiner->GetLevel(0), -1);
+        FaceRingGatherer gatherer(refiner->GetLevel(0), scene.cage.options, -1);
         FaceRing ring;
         std::vector<Index> points;
         gatherer.Gather(0, ring, points);  // its corner 0 is the extraordinary vertex
@@ -126,7 +126,7 @@ TEST(RingSubdivision, DomainsOfChildrenTileTheParent) {
         test::MakeScene(positions, {{0, 1, 0}, {0, 1, 2}}, Sdc::SCHEME_LOOP)};
     for (engine::Scene const& scene : scenes) {
         auto const refiner = far_ext::CreateRefiner(scene.cage);
-        FaceRingGatherer gatherer(refiner->GetLevel(0), -1);
+        FaceRingGatherer gatherer(refiner->GetLevel(0), scene.cage.options, -1);
         FaceRing ring;
         std::vector<Index> points;
         gatherer.Gather(0, ring, points);

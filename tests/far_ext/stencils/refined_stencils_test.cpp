@@ -10,6 +10,7 @@
 
 #include "far_ext/error.h"
 #include "far_ext/topology/refiner.h"
+#include "support/chaikin_meshes.h"
 #include "support/meshes.h"
 #include "support/stencils.h"
 
@@ -137,6 +138,15 @@ TEST(RefinedStencils, WeightsAreFarsWhereNoTwoFacesAreAlike) {
     }
     ExpectFarsWeights(*RefineUniformly(scene.cage, 2), Mode::Vertex,
                       "a crease of its own at every face", 1e-6);
+}
+
+TEST(RefinedStencils, WeightsAreFarsUnderChaikinsRule) {
+    for (auto const& scene : test::MakeChaikinMeshes()) {
+        auto const refiner = RefineUniformly(scene.cage, 3);
+        ExpectFarsWeights(*refiner, Mode::Vertex, scene.name);
+        if (!scene.cage.fvarChannels.empty())
+            ExpectFarsWeights(*refiner, Mode::FaceVarying, scene.name);
+    }
 }
 
 TEST(RefinedStencils, UnusedVerticesStay) {
