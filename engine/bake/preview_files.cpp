@@ -12,7 +12,7 @@
 #include "engine/bake/output_names.h"
 #include "engine/images/exr_rows.h"
 #include "engine/images/png.h"
-#include "engine/io/file.h"
+#include "engine/scene/sha256.h"
 
 namespace limn::engine {
 
@@ -30,10 +30,14 @@ std::string Digest(BakeOptions const& options, Attributes const& attributes) {
     return Sha256(text);
 }
 
-bool IsPictureOf(std::string const& picture, std::string const& exrName) {
+/// What a picture remarks under a key; empty where it does not, or where there is none. What is no
+/// file (a pipe, say) is left alone.
+std::string ReadRemark(std::string const& picture, char const* key) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(picture, ignored)) return {};
     auto const texts = ReadPngTexts(picture);
-    auto const of = texts.find(kOfKey);
-    return of != texts.end() && of->second == exrName;
+    auto const text = texts.find(key);
+    return text != texts.end() ? text->second : std::string();
 }
 
 }  // namespace
@@ -44,7 +48,7 @@ PreviewFiles::PreviewFiles(std::string const& path, FileLayout const& file,
       _stem(fs::path(path).replace_extension().string()),
       _made(Digest(options, attributes)),
       _hasLegends(options.hasPreviewLegend) {
-    if (!options.hasPreview) return;
+    if (!options.hasPreview || FindOutputKind(path) != OutputKind::File) return;
     int firstChannel = 0;
     for (MapTraits const& map : file.maps) {
         Preview preview(map, firstChannel, options.width, options.height, options.previewRange,
@@ -58,14 +62,18 @@ PreviewFiles::PreviewFiles(std::string const& path, FileLayout const& file,
     }
 }
 
+std::vector<std::string> PreviewFiles::GetNames() const {
+    std::vector<std::string> names;
+    for (Named const& named : _previews) {
+        names.push_back(named.name + kPicture);
+        if (_hasLegends) names.push_back(named.name + kLegend);
+    }
+    return names;
+}
+
 bool PreviewFiles::AreUpToDate() const {
-    auto const isThere = [&](std::string const& picture) {
-        auto const texts = ReadPngTexts(picture);
-        auto const made = texts.find(kMadeKey);
-        return made != texts.end() && made->second == _made;
-    };
-    return std::ranges::all_of(_previews, [&](Named const& named) {
-        return isThere(named.name + kPicture) && (!_hasLegends || isThere(named.name + kLegend));
+    return std::ranges::all_of(GetNames(), [&](std::string const& picture) {
+        return ReadRemark(picture, kMadeKey) == _made;
     });
 }
 
@@ -85,19 +93,24 @@ void PreviewFiles::RemoveStale(Model const& model) const {
     for (std::string const& name : names) {
         for (char const* ending : {kPicture, kLegend}) {
             std::error_code ignored;
-            if (fs::exists(name + ending, ignored) && IsPictureOf(name + ending, exrName))
-                fs::remove(name + ending, ignored);
+            if (ReadRemark(name + ending, kOfKey) == exrName) fs::remove(name + ending, ignored);
         }
     }
 }
 
-void PreviewFiles::Write(std::string const& of, Job const& job) {
+std::vector<std::unique_ptr<AtomicFile>> PreviewFiles::Write(std::string const& exr,
+                                                             std::string const& of,
+                                                             Job const& job) {
+    std::vector<std::unique_ptr<AtomicFile>> files;
+    auto const open = [&](std::string const& path) -> AtomicFile& {
+        return *files.emplace_back(std::make_unique<AtomicFile>(path));
+    };
     PngTexts const texts{{kOfKey, fs::path(_path).filename().string()}, {kMadeKey, _made}};
     for (Named& named : _previews) {
         named.preview.Prepare();
         bool const needsValues = named.preview.NeedsValues();
         std::optional<ExrRows> rows;
-        if (needsValues) rows.emplace(_path, named.channels);
+        if (needsValues) rows.emplace(exr, named.channels);
         auto const fillRow = [&](int row, uint8_t* rgb) {
             job.CheckStopped();
             std::array<float const*, 3> values{};
@@ -105,10 +118,11 @@ void PreviewFiles::Write(std::string const& of, Job const& job) {
                 values[c] = rows->GetRow(row, c);
             named.preview.DrawRow(row, values, rgb);
         };
-        WritePngRows(named.name + kPicture, named.preview.GetWidth(), named.preview.GetHeight(),
-                     fillRow, texts);
-        if (_hasLegends) WritePng(named.name + kLegend, named.preview.DrawLegend(of), texts);
+        WritePngRows(open(named.name + kPicture), named.preview.GetWidth(),
+                     named.preview.GetHeight(), fillRow, texts);
+        if (_hasLegends) WritePng(open(named.name + kLegend), named.preview.DrawLegend(of), texts);
     }
+    return files;
 }
 
 }  // namespace limn::engine

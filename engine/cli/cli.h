@@ -12,7 +12,7 @@
 
 #include "engine/cli/console.h"
 #include "engine/cli/run_command.h"
-#include "engine/io/file.h"
+#include "engine/io/atomic_file.h"
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
 

@@ -21,6 +21,7 @@
 #include "engine/cli/word_option.h"
 #include "engine/images/exr_names.h"
 #include "engine/io/edge_values.h"
+#include "engine/io/file.h"
 #include "far_ext/error.h"
 
 namespace limn::cli {

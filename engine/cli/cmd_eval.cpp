@@ -6,7 +6,7 @@
 #include "engine/evaluate/evaluate.h"
 #include "engine/evaluate/frames.h"
 #include "engine/evaluate/place_table.h"
-#include "engine/io/file.h"
+#include "engine/io/atomic_file.h"
 
 namespace limn::cli {
 
