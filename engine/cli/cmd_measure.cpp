@@ -75,7 +75,7 @@ int RunMeasure(MeasureArguments const& a, Context& context) {
     }
     PrintData(json.dump(2) + "\n");
     files.Commit();
-    context.GetReport().update(json);
+    context.GetReport()->update(json);
     return kDone;
 }
 

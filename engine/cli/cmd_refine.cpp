@@ -67,7 +67,7 @@ engine::DifferentialResult RefineDifferentially(RefineArguments const& a,
     auto result =
         engine::RefineDifferentially(model, MakeOptions(a, context.GetCommon()), context.GetJob());
     engine::DifferentialReport const& found = result.report;
-    auto& report = context.GetReport();
+    auto const report = context.GetReport();
     report["unknowns"] = found.unknowns;
     report["iterations"] = found.iterations;
     report["solve_seconds"] = found.solveSeconds;
@@ -110,7 +110,7 @@ int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& contex
     size_t numPoints = 0;
     for (eval::Curve const& curve : fine) numPoints += curve.points.size();
     engine::WritePolylines(a.output, fine, context.GetCommon().precision);
-    auto& report = context.GetReport();
+    auto const report = context.GetReport();
     report["inputs"].push_back({{"path", a.mesh}, {"sha256", sha256}, {"curves", curves.size()}});
     report["vertices"] = report["unknowns"] = numPoints;
     report["solve_seconds"] = elapsed.count();
