@@ -22,7 +22,6 @@
 #include "engine/cli/word_option.h"
 #include "engine/images/exr_names.h"
 #include "engine/io/edge_values.h"
-#include "engine/io/file.h"
 #include "far_ext/error.h"
 
 namespace limn::cli {
@@ -269,10 +268,7 @@ std::vector<std::string> RunBake(BakeArguments const& a, Bake& bake,
                                  engine::AuditBounds const& bounds, Context& context) {
     auto const model = bake.model ? *bake.model : context.Load(bake.mesh);
     engine::BakeOptions& options = bake.options;
-    if (!a.fieldPath.empty()) {
-        options.field = {engine::ReadEdgeValues(a.fieldPath, model.GetLevel()),
-                         engine::Sha256OfFile(a.fieldPath)};
-    }
+    if (!a.fieldPath.empty()) options.field = engine::ReadEdgeValues(a.fieldPath, model.GetLevel());
     if (!a.against.empty()) options.against = context.Load(a.against);
     if (!a.rest.empty()) options.rest = context.Load(a.rest);
     auto const report = engine::Bake(model, options, context.GetJob());
