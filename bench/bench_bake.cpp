@@ -53,7 +53,7 @@ void PackFile(std::array<std::vector<float>, 3> const& planes, std::string const
             writer.Write(tile);
         }
     });
-    writer.Commit();
+    writer.Seal({})->Commit();
 }
 
 /// One mesh with the files made of it.

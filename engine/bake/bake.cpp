@@ -38,6 +38,9 @@ BakeReport BakeTo(BakeDestination& destination, std::string const& pattern, Mode
     report.files = LayOutFiles(maps, pattern, options.hasCoverage);
     TexturedFaces const faces(model, options.groups, job);
     auto const tiles = FindBakedTiles(faces, model, options, HasUdimToken(pattern), job);
+    for (int tile : tiles) {
+        for (FileLayout const& file : report.files) destination.CheckPlace(file, tile);
+    }
     WarnBeforeBake(model, options, report.files, job);
     StripBaker baker(model, faces, options, maps, job);
 

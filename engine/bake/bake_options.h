@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "engine/images/exr_writer.h"
 
 namespace limn::engine {
+
+struct BakeOutput;
 
 /// What to bake, and into what.
 struct BakeOptions : MapOptions {
@@ -36,6 +39,10 @@ struct BakeOptions : MapOptions {
     bool IsHalf(std::string const& map) const {
         return isHalf && (halfMaps.empty() || std::ranges::find(halfMaps, map) != halfMaps.end());
     }
+
+    /// Told of each output as it is complete, on one thread at a time: what a bake that fails
+    /// later leaves.
+    std::function<void(BakeOutput const&)> onOutput{};
 };
 
 }  // namespace limn::engine

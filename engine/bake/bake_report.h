@@ -11,9 +11,10 @@ namespace limn::engine {
 
 /// One finished file, or image in memory.
 struct BakeOutput {
-    std::string path;  ///< empty in memory
-    std::string map;   ///< "mean", or "mean+normal" where maps share a file
-    std::string sha256;
+    std::string path;                   ///< empty in memory
+    std::vector<std::string> previews;  ///< beside it
+    std::string map;                    ///< "mean", or "mean+normal" where maps share a file
+    std::string sha256;                 ///< empty where none was asked for, or nothing can be read
     int tile = 1001, width = 0, height = 0;
     bool wasSkipped = false;
     TangentialPart leftOut;        ///< of displacements along the normal

@@ -9,6 +9,7 @@
 #include "engine/bake/mip_writer.h"
 #include "engine/bake/output_names.h"
 #include "engine/bake/preview_files.h"
+#include "engine/io/file.h"
 
 namespace limn::engine {
 
@@ -24,6 +25,13 @@ ExrSpec MakeSpec(BakeOptions const& options, FileLayout const& file, Attributes 
     spec.isHalf = file.FindHalfChannels(options);
     spec.attributes = attributes;
     return spec;
+}
+
+/// \param path  where the output is for the time being
+void AddChecksum(BakeOutput& output, std::string const& path, BakeOptions const& options,
+                 std::function<void()> const& check) {
+    if (options.wantsChecksums && FindOutputKind(path) == OutputKind::File)
+        output.sha256 = Sha256OfFile(path, check);
 }
 
 /// Compressed tiles of a strip.
@@ -77,10 +85,14 @@ public:
     }
 
     size_t Commit(BakeOutput& output) override {
+        auto const check = [this] { _job.CheckStopped(); };
+        auto exr = _writer.Seal({output.min, output.max}, check);
+        AddChecksum(output, exr->GetPathToWrite(), _options, check);
+        auto files = _previews.Write(exr->GetPathToWrite(),
+                                     fmt::format("{} {}", DescribeMesh(), output.tile), _job);
+        files.push_back(std::move(exr));
         _previews.RemoveStale(_model);
-        _writer.Commit();
-        _previews.Write(fmt::format("{} {}", DescribeMesh(), output.tile), _job);
-        if (_options.wantsChecksums) output.sha256 = Sha256OfFile(output.path);
+        CommitTogether(files);
         return _numClamped + (_mips ? _mips->GetNumClamped() : 0);
     }
 
@@ -122,22 +134,38 @@ private:
 
 }  // namespace
 
+std::string ExrDestination::NameFile(std::string const& map, int tile) const {
+    return ExpandPattern(
+        _options.pattern,
+        {.map = map, .mesh = _model.GetName(), .group = _options.group, .tile = tile});
+}
+
+void ExrDestination::CheckPlace(FileLayout const& file, int tile) const {
+    RequireSeeking(NameFile(file.mapName, tile));
+}
+
 std::unique_ptr<TexelSink> ExrDestination::Open(FileLayout const& file, BakeOutput& output) {
-    output.path = ExpandPattern(_options.pattern, {.map = output.map,
-                                                   .mesh = _model.GetName(),
-                                                   .group = _options.group,
-                                                   .tile = output.tile});
-    Attributes const attributes = MakeAttributes(_options, file, _model);
+    output.path = NameFile(output.map, output.tile);
+    Attributes const attributes = MakeAttributes(_options, file, _model, output.tile);
     PreviewFiles previews(output.path, file, _options, attributes);
-    output.wasSkipped =
-        _options.skipsExisting && IsUpToDate(output.path, attributes) && previews.AreUpToDate();
-    if (output.wasSkipped) {
-        if (_options.wantsChecksums) output.sha256 = Sha256OfFile(output.path);
+    output.previews = previews.GetNames();
+    if (_options.skipsExisting && previews.AreUpToDate() && IsThere(output, attributes))
         return nullptr;
-    }
     return std::make_unique<ExrSink>(_model, output.path, file, _options,
                                      MakeSpec(_options, file, attributes), std::move(previews),
                                      _job);
+}
+
+/// Fills in what the report says of an output that is skipped.
+bool ExrDestination::IsThere(BakeOutput& output, Attributes const& attributes) const {
+    auto const check = [this] { _job.CheckStopped(); };
+    auto const range = FindUpToDate(output.path, attributes, check);
+    if (!range) return false;
+    output.wasSkipped = true;
+    output.min = range->min;
+    output.max = range->max;
+    AddChecksum(output, output.path, _options, check);
+    return true;
 }
 
 }  // namespace limn::engine

@@ -15,10 +15,15 @@ public:
     ExrDestination(Model const& model, BakeOptions const& options, Job const& job)
         : _model(model), _options(options), _job(job) {}
 
-    /// \throws Error  Io
+    void CheckPlace(FileLayout const& file, int tile) const override;
+
+    /// \throws Error  as ExrWriter
     std::unique_ptr<TexelSink> Open(FileLayout const& file, BakeOutput& output) override;
 
 private:
+    std::string NameFile(std::string const& map, int tile) const;
+    bool IsThere(BakeOutput& output, Attributes const& attributes) const;
+
     Model const& _model;
     BakeOptions const& _options;
     Job const& _job;

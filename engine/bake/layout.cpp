@@ -98,7 +98,8 @@ std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, M
     return text;
 }
 
-Attributes MakeAttributes(BakeOptions const& options, FileLayout const& file, Model const& model) {
+Attributes MakeAttributes(BakeOptions const& options, FileLayout const& file, Model const& model,
+                          int tile) {
     std::string units;
     for (MapTraits const& map : file.maps) {
         units +=
@@ -110,6 +111,7 @@ Attributes MakeAttributes(BakeOptions const& options, FileLayout const& file, Mo
         {"limn:input", model.GetSha256()},
         {"limn:map", file.mapName},
         {"limn:options", MakeOptionText(options, file, model)},
+        {"limn:tile", std::to_string(tile)},
         {"limn:units", units},
         {"limn:version", kVersionAndBuild}};
     if (options.against) attributes.emplace_back("limn:against", options.against->GetSha256());
@@ -124,15 +126,20 @@ Attributes MakeAttributes(BakeOptions const& options, FileLayout const& file, Mo
     return attributes;
 }
 
-bool IsUpToDate(std::string const& path, Attributes const& attributes) {
+std::optional<ValueRange> FindUpToDate(std::string const& path, Attributes const& attributes,
+                                       std::function<void()> const& check) {
+    if (FindOutputKind(path) != OutputKind::File) return {};
     auto existing = ReadExrAttributes(path, "limn:");
+    std::erase_if(existing,
+                  [](auto const& attribute) { return attribute.first == kSealAttribute; });
     Attributes wanted;
     for (auto const& attribute : attributes) {
         if (attribute.first.starts_with("limn:")) wanted.push_back(attribute);
     }
     std::sort(existing.begin(), existing.end());
     std::sort(wanted.begin(), wanted.end());
-    return existing == wanted;
+    if (existing != wanted) return {};
+    return CheckSeal(path, check);
 }
 
 }  // namespace limn::engine

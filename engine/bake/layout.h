@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/bake/bake_options.h"
 #include "engine/bake/maps/map.h"
+#include "engine/images/exr_seal.h"
 
 namespace limn::engine {
 
@@ -32,9 +35,15 @@ std::string MakeOptionText(BakeOptions const& options, FileLayout const& file, M
 
 /// Header attributes of a file [Bake 7].
 using Attributes = std::vector<std::pair<std::string, std::string>>;
-Attributes MakeAttributes(BakeOptions const& options, FileLayout const& file, Model const& model);
+Attributes MakeAttributes(BakeOptions const& options, FileLayout const& file, Model const& model,
+                          int tile);
 
-/// True if `path` is a file this bake would write again with the same content.
-bool IsUpToDate(std::string const& path, Attributes const& attributes);
+/// The range of values of a file that a bake would write again with the same content: its header
+/// has these attributes, and every byte is as it was written.
+///
+/// \param check  called now and then; what it throws ends the work
+/// \return       nothing for another file, or none
+std::optional<ValueRange> FindUpToDate(std::string const& path, Attributes const& attributes,
+                                       std::function<void()> const& check = {});
 
 }  // namespace limn::engine

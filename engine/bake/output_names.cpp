@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "engine/images/exr_writer.h"
 #include "engine/io/file.h"
 #include "engine/scene/udim.h"
 #include "far_ext/error.h"
@@ -112,6 +113,7 @@ void OutputNames::Add(BakeOptions const& options, std::string const& mesh,
         std::string const file =
             ExpandPattern(options.pattern, {.map = map, .mesh = mesh, .group = options.group});
         if (file == kNullDevice) continue;
+        RequireSeeking(file);
         std::string const of = options.group.empty()
                                    ? fmt::format("{} of '{}'", map, path)
                                    : fmt::format("{} of '{}', {}", map, path, options.group);

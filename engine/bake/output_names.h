@@ -44,7 +44,7 @@ void RequireExrEnding(std::string const& pattern);
 class OutputNames {
 public:
     /// Adds the outputs of one bake. \param mesh  its {mesh}; \param path  what messages call it
-    /// \throws Error  BadOption: one of them is there already
+    /// \throws Error  BadOption: one of them is there already, or is no place for an EXR file
     void Add(BakeOptions const& options, std::string const& mesh, std::string const& path);
 
     /// Refuses a file that would be overwritten. \param what  it is, for the message: "the report"

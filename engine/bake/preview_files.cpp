@@ -12,7 +12,7 @@
 #include "engine/bake/output_names.h"
 #include "engine/images/exr_rows.h"
 #include "engine/images/png.h"
-#include "engine/io/file.h"
+#include "engine/scene/sha256.h"
 
 namespace limn::engine {
 
@@ -32,9 +32,16 @@ std::string Digest(BakeOptions const& options, Attributes const& attributes) {
     return Sha256(text);
 }
 
+/// The remarks of a picture; none where there is no picture. What is no file (a pipe, say) is left
+/// alone.
+PngTexts ReadRemarks(std::string const& picture) {
+    std::error_code ignored;
+    return fs::is_regular_file(picture, ignored) ? ReadPngTexts(picture) : PngTexts();
+}
+
 /// \param layer  empty for a file's only map
 bool IsPictureOf(std::string const& picture, std::string const& layer) {
-    auto texts = ReadPngTexts(picture);
+    PngTexts texts = ReadRemarks(picture);
     return texts.contains(kMadeKey) && texts[kLayerKey] == layer;
 }
 
@@ -42,11 +49,10 @@ bool IsPictureOf(std::string const& picture, std::string const& layer) {
 
 PreviewFiles::PreviewFiles(std::string const& path, FileLayout const& file,
                            BakeOptions const& options, Attributes const& attributes)
-    : _path(path),
-      _stem(fs::path(path).replace_extension().string()),
+    : _stem(fs::path(path).replace_extension().string()),
       _made(Digest(options, attributes)),
       _hasLegends(options.hasPreviewLegend) {
-    if (!options.hasPreview) return;
+    if (!options.hasPreview || FindOutputKind(path) != OutputKind::File) return;
     int firstChannel = 0;
     for (MapTraits const& map : file.maps) {
         Preview preview(map, firstChannel, options.width, options.height, options.previewRange,
@@ -66,14 +72,18 @@ PreviewFiles::PreviewFiles(std::string const& path, FileLayout const& file,
     }
 }
 
+std::vector<std::string> PreviewFiles::GetNames() const {
+    std::vector<std::string> names;
+    for (Named const& named : _previews) {
+        names.push_back(named.name + kPicture);
+        if (_hasLegends) names.push_back(named.name + kLegend);
+    }
+    return names;
+}
+
 bool PreviewFiles::AreUpToDate() const {
-    auto const isThere = [&](std::string const& picture) {
-        auto const texts = ReadPngTexts(picture);
-        auto const made = texts.find(kMadeKey);
-        return made != texts.end() && made->second == _made;
-    };
-    return std::ranges::all_of(_previews, [&](Named const& named) {
-        return isThere(named.name + kPicture) && (!_hasLegends || isThere(named.name + kLegend));
+    return std::ranges::all_of(GetNames(), [&](std::string const& picture) {
+        return ReadRemarks(picture)[kMadeKey] == _made;
     });
 }
 
@@ -90,22 +100,27 @@ void PreviewFiles::RemoveStale(Model const& model) const {
     auto const remove = [](std::string const& name, std::string const& layer) {
         for (char const* ending : {kPicture, kLegend}) {
             std::error_code ignored;
-            if (fs::exists(name + ending, ignored) && IsPictureOf(name + ending, layer))
-                fs::remove(name + ending, ignored);
+            if (IsPictureOf(name + ending, layer)) fs::remove(name + ending, ignored);
         }
     };
     remove(_stem, "");
     for (std::string const& layer : layers) remove(_stem + "." + AsFileName(layer), layer);
 }
 
-void PreviewFiles::Write(std::string const& of, Job const& job) {
+std::vector<std::unique_ptr<AtomicFile>> PreviewFiles::Write(std::string const& exr,
+                                                             std::string const& of,
+                                                             Job const& job) {
+    std::vector<std::unique_ptr<AtomicFile>> files;
+    auto const open = [&](std::string const& path) -> AtomicFile& {
+        return *files.emplace_back(std::make_unique<AtomicFile>(path));
+    };
     for (Named& named : _previews) {
         PngTexts texts{{kMadeKey, _made}};
         if (!named.layer.empty()) texts[kLayerKey] = named.layer;
         named.preview.Prepare();
         bool const needsValues = named.preview.NeedsValues();
         std::optional<ExrRows> rows;
-        if (needsValues) rows.emplace(_path, named.channels);
+        if (needsValues) rows.emplace(exr, named.channels);
         auto const fillRow = [&](int row, uint8_t* rgb) {
             job.CheckStopped();
             std::array<float const*, 3> values{};
@@ -113,10 +128,11 @@ void PreviewFiles::Write(std::string const& of, Job const& job) {
                 values[c] = rows->GetRow(row, c);
             named.preview.DrawRow(row, values, rgb);
         };
-        WritePngRows(named.name + kPicture, named.preview.GetWidth(), named.preview.GetHeight(),
-                     fillRow, texts);
-        if (_hasLegends) WritePng(named.name + kLegend, named.preview.DrawLegend(of), texts);
+        WritePngRows(open(named.name + kPicture), named.preview.GetWidth(),
+                     named.preview.GetHeight(), fillRow, texts);
+        if (_hasLegends) WritePng(open(named.name + kLegend), named.preview.DrawLegend(of), texts);
     }
+    return files;
 }
 
 }  // namespace limn::engine

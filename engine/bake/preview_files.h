@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "engine/bake/layout.h"
 #include "engine/bake/preview.h"
 #include "engine/bake/texel_sink.h"
+#include "engine/io/atomic_file.h"
 #include "engine/scene/job.h"
 
 namespace limn::engine {
@@ -24,6 +26,9 @@ public:
 
     bool IsAnyWanted() const { return !_previews.empty(); }
 
+    /// Paths of all pictures and legends that are wanted.
+    std::vector<std::string> GetNames() const;
+
     /// Whether all pictures that are wanted are there already, made of the same file.
     bool AreUpToDate() const;
 
@@ -33,12 +38,14 @@ public:
     /// Removes pictures of an earlier file of the name. \param model  whose primvars may have some
     void RemoveStale(Model const& model) const;
 
-    /// Draws what the finished file holds.
+    /// Draws what the finished file holds, for the caller to commit.
     ///
+    /// \param exr      the file, wherever it is for the time being
     /// \param of       what the maps are of, for legends
     /// \throws Error   Io
     /// \throws Stopped
-    void Write(std::string const& of, Job const& job);
+    std::vector<std::unique_ptr<AtomicFile>> Write(std::string const& exr, std::string const& of,
+                                                   Job const& job);
 
 private:
     struct Named {
@@ -48,7 +55,7 @@ private:
         std::vector<std::string> channels;  // in the EXR file
     };
 
-    std::string _path, _stem, _made;
+    std::string _stem, _made;
     bool _hasLegends;
     std::vector<Named> _previews;
 };

@@ -54,6 +54,9 @@ class BakeDestination {
 public:
     virtual ~BakeDestination() = default;
 
+    /// Refuses a place where an output cannot go, before any is baked. \throws Error BadOption
+    virtual void CheckPlace(FileLayout const&, int /*tile*/) const {}
+
     /// A sink for one output.
     ///
     /// \param output  has map, tile and size; receives what the destination decides

@@ -132,6 +132,7 @@ void TileJob::Finish(BakeReport& report) {
             report.clamped += _sinks[f]->Commit(_outputs[f]);
         }
         report.outputs.push_back(_outputs[f]);
+        if (_options.onOutput) _options.onOutput(_outputs[f]);
         wasMade = true;
     }
     if (wasMade) report.tiles.push_back(_tile);

@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/cli/console.h"
+#include "engine/cli/report.h"
 #include "engine/cli/run_command.h"
-#include "engine/io/file.h"
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
 
@@ -30,15 +30,29 @@ struct CommonOptions {
     bool isQuiet = false, isVerbose = false;
 };
 
+/// What is known of a run before the work.
+struct RunStart {
+    std::string command;
+    std::vector<std::string> arguments;  ///< as typed
+    nlohmann::json effectiveOptions;     ///< an object, all options
+};
+
+/// How a run ended.
+struct RunEnd {
+    int status = kDone;
+    std::string error{};  ///< one line; empty where all is well
+};
+
 /// What a verb runs with: its job, and the report it fills.
 class Context {
 public:
-    Context(CommonOptions const& common, std::string command, std::vector<std::string> arguments,
-            engine::MeshSource& meshes, std::function<bool()> isStopped);
+    /// \throws Error  Io: the report's file cannot be opened
+    Context(CommonOptions const& common, RunStart start, engine::MeshSource& meshes,
+            std::function<int()> const& getStopStatus);
 
     CommonOptions const& GetCommon() const { return _common; }
     engine::Job& GetJob() { return _job; }
-    nlohmann::json& GetReport() { return _report; }
+    Report::Access GetReport() { return _report.Open(); }
 
     enum class Defects { Warn, Keep };
 
@@ -48,24 +62,36 @@ public:
 
     void Warn(std::vector<std::string> const& messages);
 
-    /// Fills the keys all reports have and writes the report where it was asked for.
-    void WriteReport();
+    /// Writes the report where it was asked for, with the keys that all reports have.
+    void WriteReport(RunEnd const& end) {
+        if (_report.IsWanted()) _report.Write(Conclude(end));
+    }
 
-    /// Says on stderr, as an error, that the run did not reach what was asked. Returns its exit
-    /// status.
-    int MissTarget(std::string const& message);
+    /// Writes the report from another thread than the run's, which is to be given up. The process
+    /// has to end then.
+    void GiveUp(RunEnd const& end) { _report.WriteAndAbandonFiles(Conclude(end)); }
+
+    /// Notes that the run did not reach what was asked, which is said on stderr as an error.
+    /// Returns its exit status.
+    int MissTarget(std::string message);
+
+    /// What MissTarget was told; empty if it never was.
+    std::string const& GetMiss() const { return _miss; }
 
     /// \throws Error BadOption  if --report - would mix with data on stdout
     void KeepStdoutForData(bool writesToStdout) const;
 
 private:
+    void NoteInput(std::string const& path, engine::Model const& model);
+    nlohmann::json Conclude(RunEnd const& end) const;
+
     CommonOptions const& _common;
     engine::MeshSource& _meshes;
     Console _console;
     engine::Job _job;
-    nlohmann::json _report;
-    std::unique_ptr<engine::AtomicFile> _reportFile;
-    std::chrono::steady_clock::time_point _start;
+    Report _report;
+    std::string _miss;
+    std::chrono::steady_clock::time_point const _start = std::chrono::steady_clock::now();
 };
 
 /// The same mesh under another scheme.
@@ -75,9 +101,6 @@ engine::Model WithScheme(engine::Model const& model, Sdc::SchemeType scheme);
 
 /// {"tolerance": ..., "joined": ..., "left_apart": ...} of a welded mesh, else null.
 nlohmann::json DescribeWeld(engine::Model const& model);
-
-/// Writes data to stdout. \throws Error Io, e.g. on a full disk
-void PrintData(std::string const& text);
 
 /// A verb: its subcommand of the command line, and what to do. Returns the exit status.
 struct Verb {

@@ -11,6 +11,7 @@
 #include "engine/bake/audit/audit.h"
 #include "engine/bake/bake.h"
 #include "engine/bake/group_bakes.h"
+#include "engine/bake/left_temporaries.h"
 #include "engine/bake/maps/map_table.h"
 #include "engine/bake/output_names.h"
 #include "engine/cli/cli.h"
@@ -171,21 +172,23 @@ void AddToReport(nlohmann::json& report, engine::BakeReport const& bake) {
     add("degenerate_samples", bake.degenerateSamples);
     add("clamped", bake.clamped);
     for (int tile : bake.tiles) report["tiles"].push_back(tile);
-    for (auto const& output : bake.outputs) {
-        nlohmann::json entry{{"file", output.path},         {"map", output.map},
-                             {"tile", output.tile},         {"width", output.width},
-                             {"height", output.height},     {"sha256", output.sha256},
-                             {"skipped", output.wasSkipped}};
-        if (!output.wasSkipped) {
-            entry["min"] = output.min;
-            entry["max"] = output.max;
-        }
-        if (output.leftOut.count > 0) {
-            entry["tangential_rms"] = output.leftOut.GetRms();
-            entry["tangential_max"] = output.leftOut.max;
-        }
-        report["outputs"].push_back(std::move(entry));
+}
+
+/// An output that is complete; so a bake that fails later has told which files stay.
+void AddToReport(nlohmann::json& report, engine::BakeOutput const& output,
+                 std::string const& mesh) {
+    nlohmann::json const sha256 = output.sha256.empty() ? nullptr : nlohmann::json(output.sha256);
+    nlohmann::json entry{{"file", output.path},   {"mesh", mesh},
+                         {"map", output.map},     {"tile", output.tile},
+                         {"width", output.width}, {"height", output.height},
+                         {"sha256", sha256},      {"skipped", output.wasSkipped},
+                         {"min", output.min},     {"max", output.max}};
+    if (output.leftOut.count > 0) {
+        entry["tangential_rms"] = output.leftOut.GetRms();
+        entry["tangential_max"] = output.leftOut.max;
     }
+    report["outputs"].push_back(std::move(entry));
+    for (std::string const& preview : output.previews) report["previews"].push_back(preview);
 }
 
 /// JSON has no "none" for numbers but null.
@@ -265,10 +268,7 @@ std::vector<std::string> RunBake(BakeArguments const& a, Bake& bake,
                                  engine::AuditBounds const& bounds, Context& context) {
     auto const model = bake.model ? *bake.model : context.Load(bake.mesh);
     engine::BakeOptions& options = bake.options;
-    if (!a.fieldPath.empty()) {
-        options.field = {engine::ReadEdgeValues(a.fieldPath, model.GetLevel()),
-                         engine::Sha256OfFile(a.fieldPath)};
-    }
+    if (!a.fieldPath.empty()) options.field = engine::ReadEdgeValues(a.fieldPath, model.GetLevel());
     if (!a.against.empty()) options.against = context.Load(a.against);
     if (!a.rest.empty()) options.rest = context.Load(a.rest);
     auto const report = engine::Bake(model, options, context.GetJob());
@@ -276,7 +276,7 @@ std::vector<std::string> RunBake(BakeArguments const& a, Bake& bake,
     if (!a.hasAudit || report.outputs.empty()) return {};
     auto const audit = engine::Audit(model, options, report, bounds, context.GetJob());
     nlohmann::json json = ToJson(audit, report);
-    if (!context.GetReport().contains("audit")) context.GetReport()["audit"] = json;
+    if (!context.GetReport()->contains("audit")) context.GetReport()["audit"] = json;
     json["mesh"] = bake.mesh;
     if (!options.group.empty()) json["group"] = options.group;
     context.GetReport()["audits"].push_back(std::move(json));
@@ -297,15 +297,23 @@ int Run(BakeArguments const& a, CLI::App const& verb, Context& context) {
         context.GetJob().Warn(
             "the output's name has no {map}: all maps go into one file with a layer each");
     }
-    std::vector<std::string> misses;
+    context.GetReport()->update(
+        {{"outputs", nlohmann::json::array()}, {"previews", nlohmann::json::array()}});
+    std::vector<std::string> misses, written;
     for (Bake& bake : bakes) {
+        bake.options.onOutput = [&](engine::BakeOutput const& output) {
+            AddToReport(context.GetReport(), output, bake.mesh);
+            if (!output.wasSkipped) written.push_back(output.path);
+        };
         auto const own = RunBake(a, bake, bounds, context);
         misses.insert(misses.end(), own.begin(), own.end());
         bake.model.reset();
     }
-    if (!context.GetReport().contains("outputs")) {
+    if (context.GetReport()["outputs"].empty()) {
         throw Error(ErrorCode::BadMesh, "no texel is covered by any group in the tiles asked for");
     }
+    std::string const left = engine::DescribeLeftTemporaries(written);
+    if (!left.empty()) context.GetJob().Warn(left);
     if (misses.empty()) return kDone;
     for (size_t i = 1; i < misses.size(); ++i) context.GetJob().Warn(misses[i]);
     std::string const more =

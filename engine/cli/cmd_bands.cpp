@@ -31,6 +31,7 @@ Verb AddBands(CLI::App& app) {
                 context.GetReport()["before"] = DescribeExtent(model, model.GetPositions());
                 engine::Scene output = model.MakeScene();
                 engine::MeshSequence files(context.GetCommon().precision);
+                auto outputs = nlohmann::json::array();
                 std::vector<std::string> warnings;
                 auto const add = [&](std::string const& path, std::vector<double>& positions) {
                     output.positions = std::move(positions);
@@ -38,12 +39,13 @@ Verb AddBands(CLI::App& app) {
                     if (warnings.empty()) warnings = leftOut;  // one file speaks for all
                     auto entry = DescribeExtent(model, output.positions);
                     entry["file"] = path;
-                    context.GetReport()["outputs"].push_back(std::move(entry));
+                    outputs.push_back(std::move(entry));
                 };
                 for (size_t i = 0; i < bands.bands.size(); ++i)
                     add(fmt::format("{}.band{}.obj", a->prefix, i), bands.bands[i]);
                 add(a->prefix + ".remainder.obj", bands.remainder);
                 files.Commit();
+                context.GetReport()["outputs"] = std::move(outputs);
                 context.Warn(warnings);
                 return kDone;
             }};

@@ -6,7 +6,7 @@
 #include "engine/evaluate/evaluate.h"
 #include "engine/evaluate/frames.h"
 #include "engine/evaluate/place_table.h"
-#include "engine/io/file.h"
+#include "engine/io/atomic_file.h"
 
 namespace limn::cli {
 
@@ -25,7 +25,7 @@ void EvaluateFrames(EvalArguments const& a, engine::Model const& model,
     auto const result = engine::NamingRows(places, [&] {
         return engine::EvaluateFrames(model, places.GetPlaces(), frames, options, context.GetJob());
     });
-    auto& report = context.GetReport();
+    auto const report = context.GetReport();
     report["places_without_limit"] = result.numWithoutLimit;
     report["places_in_table"] = result.numRows;
     report["evaluator"] = a.evaluator ? GetName(*a.evaluator) : "double";

@@ -10,6 +10,7 @@
 #include "engine/field/field.h"
 #include "engine/images/png.h"
 #include "engine/io/edge_values.h"
+#include "engine/io/file.h"
 #include "engine/io/mesh_writer.h"
 #include "engine/io/number_table.h"
 #include "engine/measure/mesh_picture.h"
@@ -158,7 +159,7 @@ int Run(FieldArguments const& a, Context& context) {
     }
     if (!a.picture.empty())
         engine::WritePng(
-            files.Reserve(a.picture),
+            files.Open(a.picture),
             engine::DrawArrows(field.mesh, field.vectors, {{a.view[0], a.view[1], a.view[2]}}));
     files.Commit();
     context.Warn(warnings);

@@ -130,7 +130,7 @@ Verb AddInfo(CLI::App& app) {
                         ? json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"
                         : ToText(model, info);
                 PrintData(text);
-                context.GetReport().update(json);
+                context.GetReport()->update(json);
                 return kDone;
             }};
 }

@@ -60,18 +60,22 @@ int RunMeasure(MeasureArguments const& a, Context& context) {
     CommonOptions const& common = context.GetCommon();
     engine::Job& job = context.GetJob();
     auto const json = ToJson(engine::Measure(model, a.surface, common.orientation, job));
+    engine::MeshSequence files(common.precision);
     if (!a.prefix.empty()) {
         auto const curved = engine::AddVertexCurvature(
             model, engine::FindVertexCurvature(model, a.surface, common.orientation, job));
-        context.Warn(engine::WriteMesh(a.prefix + ".ply", curved, common.precision));
+        context.Warn(files.Add(a.prefix + ".ply", curved));
         engine::PictureView const view{{a.view[0], a.view[1], a.view[2]}};
         if (a.hasPicture)
-            engine::WritePng(a.prefix + ".mean.png", engine::DrawValues(curved, "mean", view));
+            engine::WritePng(files.Open(a.prefix + ".mean.png"),
+                             engine::DrawValues(curved, "mean", view));
         if (a.hasHighlight)
-            engine::WritePng(a.prefix + ".highlight.png", engine::DrawHighlights(curved, view));
+            engine::WritePng(files.Open(a.prefix + ".highlight.png"),
+                             engine::DrawHighlights(curved, view));
     }
     PrintData(json.dump(2) + "\n");
-    context.GetReport().update(json);
+    files.Commit();
+    context.GetReport()->update(json);
     return kDone;
 }
 

@@ -36,6 +36,7 @@ Verb AddMorph(CLI::App& app) {
                 context.GetReport()["before"] = DescribeExtent(from, from.GetPositions());
                 engine::Scene output = to.MakeScene();
                 engine::MeshSequence files(context.GetCommon().precision);
+                auto outputs = nlohmann::json::array();
                 std::vector<std::string> warnings;
                 for (int step = 1; step <= a->steps; ++step) {
                     std::string const path = fmt::format("{}.{:04}.obj", a->prefix, step);
@@ -44,10 +45,11 @@ Verb AddMorph(CLI::App& app) {
                     if (step == 1) warnings = leftOut;
                     auto entry = DescribeExtent(to, output.positions);
                     entry["file"] = path;
-                    context.GetReport()["outputs"].push_back(std::move(entry));
+                    outputs.push_back(std::move(entry));
                 }
                 context.GetReport()["after"] = DescribeExtent(to, output.positions);
                 files.Commit();
+                context.GetReport()["outputs"] = std::move(outputs);
                 context.Warn(warnings);
                 return kDone;
             }};

@@ -67,7 +67,7 @@ engine::DifferentialResult RefineDifferentially(RefineArguments const& a,
     auto result =
         engine::RefineDifferentially(model, MakeOptions(a, context.GetCommon()), context.GetJob());
     engine::DifferentialReport const& found = result.report;
-    auto& report = context.GetReport();
+    auto const report = context.GetReport();
     report["unknowns"] = found.unknowns;
     report["iterations"] = found.iterations;
     report["solve_seconds"] = found.solveSeconds;
@@ -102,7 +102,7 @@ int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& contex
     RefuseEach(verb, {"--limit", "--weld"}, kWhy);
     auto const rule = GetRule(a) == SubdivisionRule::Butterfly ? eval::CurveRule::FourPoint
                                                                : eval::CurveRule::CubicBSpline;
-    auto const curves = engine::ReadPolylines(a.mesh);
+    auto const [curves, sha256] = engine::ReadPolylines(a.mesh);
     auto const start = std::chrono::steady_clock::now();
     auto const [fine, worst] =
         engine::RefineCurves(curves, {rule, a.levels, a.isDifferential}, context.GetJob());
@@ -110,9 +110,8 @@ int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& contex
     size_t numPoints = 0;
     for (eval::Curve const& curve : fine) numPoints += curve.points.size();
     engine::WritePolylines(a.output, fine, context.GetCommon().precision);
-    auto& report = context.GetReport();
-    report["inputs"].push_back(
-        {{"path", a.mesh}, {"sha256", engine::Sha256OfFile(a.mesh)}, {"curves", curves.size()}});
+    auto const report = context.GetReport();
+    report["inputs"].push_back({{"path", a.mesh}, {"sha256", sha256}, {"curves", curves.size()}});
     report["vertices"] = report["unknowns"] = numPoints;
     report["solve_seconds"] = elapsed.count();
     report["residual"] = worst.residual;

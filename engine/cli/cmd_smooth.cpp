@@ -10,6 +10,7 @@
 #include "engine/cli/option_rules.h"
 #include "engine/cli/word_option.h"
 #include "engine/images/png.h"
+#include "engine/io/file.h"
 #include "engine/io/mesh_writer.h"
 #include "engine/measure/mesh_picture.h"
 #include "engine/scene/subdivision_names.h"
@@ -194,7 +195,7 @@ int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     engine::MeshSequence files(precision);
     auto const warnings = files.Add(a.output, *mesh);
     if (!a.picture.empty())
-        engine::WritePng(files.Reserve(a.picture),
+        engine::WritePng(files.Open(a.picture),
                          engine::DrawShaded(*mesh, {{a.view[0], a.view[1], a.view[2]}}));
     files.Commit();
     context.Warn(warnings);

@@ -2,16 +2,40 @@
 #include "engine/cli/console.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <utility>
 
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include "engine/cli/option_names.h"
+#include "engine/io/file.h"
 
 namespace limn::cli {
 
 using engine::Progress;
+
+void Say(std::string_view text) {
+    // Not by stdio, whose lock a thread that waits for a full pipe would hold.
+    while (!text.empty()) {
+        ssize_t const count = ::write(STDERR_FILENO, text.data(), text.size());
+        if (count < 0 && errno != EINTR) return;
+        text.remove_prefix(static_cast<size_t>(std::max<ssize_t>(count, 0)));
+    }
+}
+
+void SayWithoutWaiting(std::string_view text) {
+    pollfd stream{STDERR_FILENO, POLLOUT, 0};
+    if (::poll(&stream, 1, 0) == 1) Say(text);
+}
+
+void PrintData(std::string const& text) {
+    bool const isWritten =
+        std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+    if (!isWritten) engine::ThrowIoError("stdout", "cannot be written");
+}
 
 engine::JobHost Console::MakeHost(std::function<bool()> isStopped) {
     engine::JobHost host{.isStopped = std::move(isStopped)};
@@ -50,21 +74,18 @@ void Console::Show(Progress const& progress) {
         : share > 0.0       ? fmt::format("{:.0f} s left", elapsed.count() * (1 - share) / share)
                             : std::string("starting");
     if (_style == Style::Lines) {
-        fmt::print(stderr, "limn: {}: {:.0f} %, {}\n", progress.phase, 100 * share, time);
+        Say(fmt::format("limn: {}: {:.0f} %, {}\n", progress.phase, 100 * share, time));
         return;
     }
     int const filled = static_cast<int>(share * 30);
-    fmt::print(stderr, "\r{} [{:=<{}}{: <{}}] {:3.0f} %  {}   ", progress.phase, "", filled, "",
-               30 - filled, 100 * share, time);
+    Say(fmt::format("\r{} [{:=<{}}{: <{}}] {:3.0f} %  {}   {}", progress.phase, "", filled, "",
+                    30 - filled, 100 * share, time, progress.isFinished ? "\n" : ""));
     _isLineOpen = !progress.isFinished;
-    if (progress.isFinished) fmt::print(stderr, "\n");
-    std::fflush(stderr);
 }
 
 void Console::OnWarning(std::string const& message) {
-    if (_isLineOpen) fmt::print(stderr, "\n");
+    Say(fmt::format("{}limn: warning: {}\n", _isLineOpen ? "\n" : "", NameFlags(message)));
     _isLineOpen = false;
-    fmt::print(stderr, "limn: warning: {}\n", NameFlags(message));
 }
 
 }  // namespace limn::cli

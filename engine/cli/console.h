@@ -5,11 +5,21 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "engine/scene/job.h"
 #include "far_ext/enum_words.h"
 
 namespace limn::cli {
+
+/// Writes to stderr, as far as it takes anything: that nobody hears is no error.
+void Say(std::string_view text);
+
+/// As Say, but says nothing where stderr is a full pipe, which another thread may be waiting for.
+void SayWithoutWaiting(std::string_view text);
+
+/// Writes data to stdout. \throws Error Io, e.g. on a full disk
+void PrintData(std::string const& text);
 
 /// The terminal as a job's host: progress and warnings on stderr, as they come.
 class Console {

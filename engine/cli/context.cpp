@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
-#include <cstdio>
+#include <fstream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include "engine/cli/cli.h"
 #include "engine/cli/option_names.h"
-#include "engine/io/file.h"
 #include "engine/scene/defects.h"
 #include "engine/scene/subdivision_names.h"
 #include "engine/scene/weld.h"
@@ -37,23 +37,19 @@ void ApplyOptions(CommonOptions const& common, far_ext::ControlMesh& cage) {
 
 }  // namespace
 
-Context::Context(CommonOptions const& common, std::string command,
-                 std::vector<std::string> arguments, engine::MeshSource& meshes,
-                 std::function<bool()> isStopped)
+Context::Context(CommonOptions const& common, RunStart start, engine::MeshSource& meshes,
+                 std::function<int()> const& getStopStatus)
     : _common(common),
       _meshes(meshes),
       _console(ChooseStyle(common), common.isQuiet),
-      _job(_console.MakeHost(std::move(isStopped))),
-      _start(std::chrono::steady_clock::now()) {
-    // Opened before the work, so that a report that cannot be written is known before there is
-    // output.
-    if (!common.reportPath.empty() && common.reportPath != "-") {
-        _reportFile = std::make_unique<engine::AtomicFile>(common.reportPath);
-    }
-    _report["limn_version"] = kVersionAndBuild;
-    _report["command"] = command;
-    _report["options"] = std::move(arguments);
-    _report["inputs"] = nlohmann::json::array();
+      _job(_console.MakeHost([=] { return getStopStatus && getStopStatus() != 0; })),
+      _report(common.reportPath) {
+    auto const report = _report.Open();
+    report["limn_version"] = kVersionAndBuild;
+    report["command"] = std::move(start.command);
+    report["options"] = std::move(start.arguments);
+    report["effective_options"] = std::move(start.effectiveOptions);
+    report["inputs"] = nlohmann::json::array();
 }
 
 engine::Model Context::Load(std::string const& path, Defects defects) {
@@ -66,21 +62,37 @@ engine::Model Context::Load(std::string const& path, Defects defects) {
         for (auto const& defect : engine::FindDefects(model))
             _job.Warn(fmt::format("{}: {}", path, defect.message));
     }
-    _report["inputs"].push_back({{"path", path},
-                                 {"sha256", model.GetSha256()},
-                                 {"vertices", model.GetCage().numVertices},
-                                 {"faces", model.GetCage().GetNumFaces()},
-                                 {"subdivision", engine::DescribeSubdivision(model.GetCage())}});
-    if (model.GetWeld()) _report["inputs"].back()["weld"] = DescribeWeld(model);
+    NoteInput(path, model);
     return model;
+}
+
+/// In the report; the first input also says what the subdivision options are that it decides.
+void Context::NoteInput(std::string const& path, engine::Model const& model) {
+    auto const& cage = model.GetCage();
+    auto const report = _report.Open();
+    if (report["inputs"].empty()) {
+        auto const& rules = cage.options;
+        report["effective_options"].update(
+            {{"scheme", engine::kSchemeWords.GetWord(cage.scheme)},
+             {"boundary", engine::kBoundaryWords.GetWord(rules.GetVtxBoundaryInterpolation())},
+             {"fvar", engine::kFVarWords.GetWord(rules.GetFVarLinearInterpolation())},
+             {"creases", engine::kCreaseWords.GetWord(rules.GetCreasingMethod())},
+             {"triangles", engine::kTriangleWords.GetWord(rules.GetTriangleSubdivision())}});
+    }
+    report["inputs"].push_back({{"path", path},
+                                {"sha256", model.GetSha256()},
+                                {"vertices", cage.numVertices},
+                                {"faces", cage.GetNumFaces()},
+                                {"subdivision", engine::DescribeSubdivision(cage)}});
+    if (model.GetWeld()) report["inputs"].back()["weld"] = DescribeWeld(model);
 }
 
 void Context::Warn(std::vector<std::string> const& messages) {
     for (std::string const& message : messages) _job.Warn(message);
 }
 
-int Context::MissTarget(std::string const& message) {
-    fmt::print(stderr, "limn: error: {}\n", message);
+int Context::MissTarget(std::string message) {
+    _miss = std::move(message);
     return kNotReached;
 }
 
@@ -107,26 +119,28 @@ nlohmann::json DescribeWeld(engine::Model const& model) {
             {"left_apart", weld->numLeftApart}};
 }
 
-void PrintData(std::string const& text) {
-    bool const isWritten =
-        std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-    if (!isWritten) engine::ThrowIoError("stdout", "cannot be written");
+namespace {
+
+/// The most memory that the process has held. getrusage would count what its parent held, too.
+size_t FindPeakBytes() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.starts_with("VmHWM:")) return std::stoull(line.substr(6)) * 1024;
+    }
+    return 0;
 }
 
-void Context::WriteReport() {
-    if (_common.reportPath.empty()) return;
-    auto& warnings = _report["warnings"] = nlohmann::json::array();
+}  // namespace
+
+nlohmann::json Context::Conclude(RunEnd const& end) const {
+    auto warnings = nlohmann::json::array();
     for (std::string const& warning : _job.GetWarnings()) warnings.push_back(NameFlags(warning));
     std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - _start;
-    _report["seconds"] = std::round(elapsed.count() * 1e3) / 1e3;
-    std::string const text =
-        _report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-    if (_common.reportPath == "-") {
-        PrintData(text);
-    } else {
-        _reportFile->Write(text);
-        _reportFile->Commit();
-    }
+    return {{"warnings", std::move(warnings)},
+            {"seconds", std::round(elapsed.count() * 1e3) / 1e3},
+            {"peak_bytes", FindPeakBytes()},
+            {"exit_status", end.status},
+            {"error", end.error.empty() ? nlohmann::json() : nlohmann::json(end.error)}};
 }
 
 }  // namespace limn::cli

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/cli/run_command.h"
 
-#include <cstdio>
 #include <cstdlib>
 #include <new>
 #include <optional>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -12,6 +12,7 @@
 #include <tbb/task_arena.h>
 
 #include "engine/cli/cli.h"
+#include "engine/cli/effective_options.h"
 #include "engine/cli/names.h"
 #include "engine/cli/option_names.h"
 #include "engine/cli/word_option.h"
@@ -66,7 +67,7 @@ int ChooseThreads(CommonOptions const& options) {
 int ToExitStatus(ErrorCode code) {
     switch (code) {
         case ErrorCode::BadOption:
-            return 2;
+            return kUsage;
         case ErrorCode::BadMesh:
         case ErrorCode::Unsupported:
         case ErrorCode::TooLarge:
@@ -74,15 +75,15 @@ int ToExitStatus(ErrorCode code) {
         case ErrorCode::Io:
             return 5;
     }
-    return 1;
+    return kInternal;
 }
 
-int Fail(int status, std::string message) {
+/// An error is one line.
+std::string AsLine(std::string message) {
     for (char& c : message) {
-        if (c == '\n' || c == '\r') c = ' ';  // an error is one line
+        if (c == '\n' || c == '\r') c = ' ';
     }
-    fmt::print(stderr, "limn: error: {}\n", message);
-    return status;
+    return message;
 }
 
 /// Calls work() on so many threads. The arena alone sees to it up to the number of cores; the
@@ -97,20 +98,53 @@ int RunOnThreads(int numThreads, Work const& work) {
     return arena.execute(work);
 }
 
+constexpr char const* kInterrupted = "interrupted; nothing half-written is left";
+
+/// Does some work and tells how it ended, whatever it throws.
+template <class Work>
+RunEnd Attempt(Work const& work, std::function<int()> const& getStopStatus) {
+    try {
+        return work();
+    } catch (engine::Stopped const&) {
+        return {getStopStatus(), kInterrupted};
+    } catch (Error const& error) {
+        return {ToExitStatus(error.GetCode()), AsLine(NameFlags(error.what()))};
+    } catch (std::bad_alloc const&) {
+        return {kInternal, "out of memory"};
+    } catch (std::exception const& error) {
+        return {kInternal, AsLine(fmt::format("internal: {}", error.what()))};
+    }
+}
+
+/// Status 4 of a run that only warned of what it missed.
+constexpr char const* kSeeWarnings = "what was asked for was not reached; see the warnings";
+
+RunEnd ConcludeRun(int status, Context const& context) {
+    if (status == kDone) return {};
+    return {status, context.GetMiss().empty() ? kSeeWarnings : AsLine(context.GetMiss())};
+}
+
+}  // namespace
+
 /// The command line as CLI11 understands it.
 struct Parser {
     CLI::App app{"limn bakes the true limit of subdivision surfaces.", "limn"};
     CommonOptions common;
     std::vector<Verb> verbs;
+    OptionDefaults defaults;
 
     Parser() {
         app.set_version_flag("--version", kVersionAndBuild);
         app.require_subcommand(1);
         app.get_formatter()->column_width(34);
+        app.option_defaults()->always_capture_default();
         verbs = {AddInfo(app),    AddEval(app),  AddBake(app),   AddRefine(app),
                  AddMeasure(app), AddFit(app),   AddBands(app),  AddDenoise(app),
                  AddSharpen(app), AddMorph(app), AddSmooth(app), AddField(app)};
-        for (auto const& verb : verbs) AddCommonOptions(*verb.app, common);
+        for (auto const& verb : verbs) {
+            AddCommonOptions(*verb.app, common);
+            TakeDefaults(*verb.app, defaults);
+        }
     }
 
     void Parse(std::vector<std::string> const& arguments) {
@@ -121,41 +155,89 @@ struct Parser {
     Verb const& GetVerb() const {
         return *std::ranges::find_if(verbs, [](Verb const& verb) { return verb.app->parsed(); });
     }
+
+    RunStart MakeStart(std::vector<std::string> const& arguments) const {
+        CLI::App const& verb = *GetVerb().app;
+        auto options = DescribeOptions(verb, defaults);
+        options["threads"] = ChooseThreads(common);
+        return {verb.get_name(), arguments, std::move(options)};
+    }
 };
 
-int RunVerb(Parser const& parser, std::vector<std::string> const& arguments,
-            engine::MeshSource& meshes, std::function<bool()> const& isStopped) {
-    Verb const& verb = parser.GetVerb();
-    Context context(parser.common, verb.app->get_name(), arguments, meshes, isStopped);
-    int const status =
-        RunOnThreads(ChooseThreads(parser.common), [&] { return verb.run(context); });
-    context.WriteReport();
-    return status;
+namespace {
+
+/// Help or the version, to stdout.
+RunEnd PrintAnswer(CLI::App const& app, CLI::Success const& asked) {
+    std::ostringstream out, err;
+    RunEnd const end{app.exit(asked, out, err)};
+    PrintData(out.str());
+    return end;
 }
 
 }  // namespace
 
-int RunCommand(std::vector<std::string> const& arguments, engine::MeshSource& meshes,
-               std::function<bool()> const& isStopped) {
+Command::Command(std::vector<std::string> arguments, engine::MeshSource& meshes,
+                 std::function<int()> getStopStatus)
+    : _arguments(std::move(arguments)), _meshes(meshes), _getStopStatus(std::move(getStopStatus)) {}
+
+int Command::Run() {
+    RunEnd const end = Attempt([&] { return ParseAndRun(); }, _getStopStatus);
+    if (!end.error.empty()) Say(fmt::format("limn: error: {}\n", end.error));
+    return end.status;
+}
+
+RunEnd Command::ParseAndRun() {
     Parser parser;
     try {
-        parser.Parse(arguments);
-    } catch (CLI::Success const& asked) {  // help, version
-        return parser.app.exit(asked);
+        parser.Parse(_arguments);
+    } catch (CLI::Success const& asked) {
+        return PrintAnswer(parser.app, asked);
     } catch (CLI::ParseError const& error) {
-        return Fail(2, fmt::format("{} (limn VERB --help tells more)", error.what()));
+        return {kUsage, AsLine(fmt::format("{} (limn VERB --help tells more)", error.what()))};
     }
-    try {
-        return RunVerb(parser, arguments, meshes, isStopped);
-    } catch (engine::Stopped const&) {
-        return Fail(kStopped, "interrupted; nothing half-written is left");
-    } catch (Error const& error) {
-        return Fail(ToExitStatus(error.GetCode()), NameFlags(error.what()));
-    } catch (std::bad_alloc const&) {
-        return Fail(1, "out of memory");
-    } catch (std::exception const& error) {
-        return Fail(1, fmt::format("internal: {}", error.what()));
+    return RunVerb(parser);
+}
+
+RunEnd Command::RunVerb(Parser const& parser) {
+    Context context(parser.common, parser.MakeStart(_arguments), _meshes, _getStopStatus);
+    SetContext(&context);
+    RunEnd end = Attempt(
+        [&] {
+            int const status = RunOnThreads(ChooseThreads(parser.common),
+                                            [&] { return parser.GetVerb().run(context); });
+            return ConcludeRun(status, context);
+        },
+        _getStopStatus);
+    if (end.status != kUsage) {
+        RunEnd const written =
+            Attempt([&] { return context.WriteReport(end), RunEnd{}; }, _getStopStatus);
+        if (end.status == kDone)
+            end = written;
+        else if (written.status != kDone)
+            Say(fmt::format("limn: warning: there is no report: {}\n", written.error));
     }
+    SetContext(nullptr);
+    return end;
+}
+
+void Command::SetContext(Context* context) {
+    std::lock_guard const lock(_contextMutex);
+    _context = context;
+}
+
+void Command::GiveUp(int status) {
+    RunEnd const end{status, kInterrupted};
+    _contextMutex.lock();  // for good: from here on the run can only wait
+    Attempt(
+        [&] {
+            if (_context)
+                _context->GiveUp(end);
+            else
+                engine::AbandonFiles(nullptr);
+            return end;
+        },
+        _getStopStatus);
+    SayWithoutWaiting(fmt::format("limn: error: {}\n", end.error));
 }
 
 }  // namespace limn::cli

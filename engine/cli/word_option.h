@@ -15,10 +15,12 @@ namespace limn::cli {
 template <class Target, class Value, size_t N>
 CLI::Option* AddWordOption(CLI::App& verb, std::string const& flag, Target& target,
                            EnumWords<Value, N> const& words, std::string const& help) {
-    return verb
-        .add_option_function<std::string>(
-            flag, [&target, &words](std::string const& word) { target = words.Parse(word); }, help)
-        ->check(CLI::IsMember(words.List()));
+    auto* const option = verb.add_option_function<std::string>(
+        flag, [&target, &words](std::string const& word) { target = words.Parse(word); }, help);
+    for (auto const& row : words.rows) {
+        if (target == row.value) option->default_str(row.word);
+    }
+    return option->check(CLI::IsMember(words.List()));
 }
 
 }  // namespace limn::cli

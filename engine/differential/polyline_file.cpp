@@ -4,9 +4,11 @@
 #include <iterator>
 
 #include "engine/differential/polyline_chains.h"
+#include "engine/io/atomic_file.h"
 #include "engine/io/file.h"
 #include "engine/io/file_kind.h"
 #include "engine/io/text_scanner.h"
+#include "engine/scene/sha256.h"
 
 namespace limn::engine {
 
@@ -58,7 +60,7 @@ eval::Curve MakeCurve(TextScanner const& scan, Polyline const& polyline,
 
 }  // namespace
 
-std::vector<eval::Curve> ReadPolylines(std::string const& path) {
+PolylineFile ReadPolylines(std::string const& path) {
     InputFile const file(path);
     RefuseForeignFile(file.GetBytes(), path, "OBJ");
     TextScanner scan(file.GetBytes(), path, TextScanner::Backslash::JoinsLines);
@@ -84,9 +86,10 @@ std::vector<eval::Curve> ReadPolylines(std::string const& path) {
                                   "may end there, and none on another",
                                   branch->vertex + 1));
     }
-    std::vector<eval::Curve> curves;
-    for (Polyline const& chain : chains.Join()) curves.push_back(MakeCurve(scan, chain, points));
-    return curves;
+    PolylineFile found{{}, Sha256(file.GetBytes())};
+    for (Polyline const& chain : chains.Join())
+        found.curves.push_back(MakeCurve(scan, chain, points));
+    return found;
 }
 
 void WritePolylines(std::string const& path, std::vector<eval::Curve> const& curves,

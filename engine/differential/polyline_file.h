@@ -9,13 +9,19 @@
 
 namespace limn::engine {
 
+/// What a file of polylines holds.
+struct PolylineFile {
+    std::vector<eval::Curve> curves;
+    std::string sha256;  ///< of its bytes
+};
+
 /// Reads the polylines ('l') of an OBJ file. Those that end at the same vertex are one curve, as
 /// where a file has an 'l' per edge; one that ends where it begins is closed. Other statements but
 /// 'v' are skipped.
 ///
 /// \throws Error  Io; BadMesh: no polyline, an index out of range, a closed one of fewer than 3
 ///                points, a vertex at which curves branch
-std::vector<eval::Curve> ReadPolylines(std::string const& path);
+PolylineFile ReadPolylines(std::string const& path);
 
 /// Writes curves as 'v' and 'l' of an OBJ file, complete or not at all. Numbers read back as the
 /// same float or double.

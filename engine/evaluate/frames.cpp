@@ -13,7 +13,7 @@
 
 #include "engine/evaluate/evaluate.h"
 #include "engine/evaluate/place_table.h"
-#include "engine/io/file.h"
+#include "engine/io/atomic_file.h"
 #include "engine/io/mesh_reader.h"
 #include "engine/scene/require_limit.h"
 #include "engine/scene/same_faces.h"
@@ -202,6 +202,7 @@ FramesReport EvaluateFrames(Model const& model, PlaceArrays const& places,
         auto file = std::make_unique<AtomicFile>(report.outputs[i]);
         auto const values = MakeLimitValues(surface, places.faces, evaluate(frame));
         file->Write(FormatValues(places, values, options.precision));
+        file->Finish();
         files[i] = std::move(file);
         job.Advance();
     };
@@ -211,7 +212,7 @@ FramesReport EvaluateFrames(Model const& model, PlaceArrays const& places,
     tbb::parallel_pipeline(
         numInFlight, tbb::make_filter<void, size_t>(tbb::filter_mode::serial_in_order, choose) &
                          tbb::make_filter<size_t, void>(tbb::filter_mode::parallel, work));
-    for (auto& file : files) file->Commit();
+    CommitTogether(files);
     job.Finish();
     report.numWithoutLimit =
         static_cast<size_t>(std::count_if(places.faces.begin(), places.faces.end(),

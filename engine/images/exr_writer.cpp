@@ -4,18 +4,25 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <new>
 #include <numeric>
+#include <system_error>
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
+#include <OpenEXR/ImfVecAttribute.h>
 #include <OpenEXR/openexr.h>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <libdeflate.h>
 
 #include "engine/images/pixel_kernel.h"
+#include "engine/io/descriptor.h"
+#include "engine/io/file.h"
 #include "eval/kernels/dispatch.h"
 #include "far_ext/error.h"
 
@@ -25,6 +32,16 @@ size_t ExrSpec::GetWordsPerTexel() const {
     size_t words = 0;
     for (size_t channel = 0; channel < channels.size(); ++channel) words += IsHalf(channel) ? 1 : 2;
     return words;
+}
+
+std::string const& RequireSeeking(std::string const& path) {
+    if (FindOutputKind(path) == OutputKind::Stream) {
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("'{}' is a pipe or a device, in which an EXR file cannot be "
+                                "written: its index needs seeking; name a file, or /dev/null",
+                                path));
+    }
+    return path;
 }
 
 int ExrSpec::GetNumLevels() const {
@@ -118,6 +135,9 @@ struct ExrWriter::CoreBackend : ExrWriter::Backend {
         for (auto const& [name, value] : spec.attributes) {
             Check(exr_attr_set_string(context, part, name.c_str(), value.c_str()));
         }
+        Check(exr_attr_set_string(context, part, kSealAttribute, kBlankSeal.c_str()));
+        exr_attr_v2f_t const blank{};
+        Check(exr_attr_set_v2f(context, part, kRangeAttribute, &blank));
         Check(exr_write_header(context));
     }
     ~CoreBackend() override {
@@ -125,6 +145,7 @@ struct ExrWriter::CoreBackend : ExrWriter::Backend {
     }
 
     void Check(exr_result_t result) const {
+        if (result == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
         if (result != EXR_ERR_SUCCESS) ThrowWriteError(path, exr_get_default_error_message(result));
     }
     void Write(ExrTile const& tile) override {
@@ -139,16 +160,55 @@ struct ExrWriter::CoreBackend : ExrWriter::Backend {
     bool TakesFinishedChunks() const override { return true; }
 };
 
+namespace {
+
+/// OpenEXR's own stream notices a full disk only if that happens before its buffer's last flush.
+class UnbufferedStream : public Imf::OStream {
+public:
+    explicit UnbufferedStream(std::string const& path)
+        : OStream(path.c_str()), _file(::open(path.c_str(), O_WRONLY | O_CLOEXEC)) {
+        Require(_file.IsOpen());
+    }
+
+    void write(char const bytes[], int size) override {
+        for (ssize_t count = 0; size > 0; bytes += count, size -= static_cast<int>(count)) {
+            count = ::pwrite(_file.Get(), bytes, static_cast<size_t>(size), _position);
+            if (count < 0 && errno == EINTR) count = 0;
+            Require(count >= 0);
+            _position += count;
+        }
+    }
+    uint64_t tellp() override { return static_cast<uint64_t>(_position); }
+    void seekp(uint64_t position) override { _position = static_cast<off_t>(position); }
+
+    /// The library's destructors swallow what is thrown while they write.
+    int GetReason() const { return _reason; }
+
+private:
+    void Require(bool isDone) {
+        if (isDone) return;
+        _reason = errno;
+        throw std::system_error(_reason, std::generic_category());
+    }
+
+    Descriptor _file;
+    off_t _position = 0;
+    int _reason = 0;
+};
+
+}  // namespace
+
 /// OpenEXR's C++ library compresses PIZ, RLE and DWAA itself.
 struct ExrWriter::LibraryBackend : ExrWriter::Backend {
-    std::unique_ptr<Imf::TiledOutputFile> file;
     std::string path;
+    UnbufferedStream stream;
+    std::unique_ptr<Imf::TiledOutputFile> file;
     ExrSpec spec;
     std::vector<int> sorted;
 
     LibraryBackend(std::string const& shownPath, std::string const& temporary, ExrSpec const& s,
                    std::vector<int> const& order)
-        : path(shownPath), spec(s), sorted(order) {
+        : path(shownPath), stream(temporary), spec(s), sorted(order) {
         Imf::Header header(spec.width, spec.height);
         header.compression() = ToLibrary(spec.compression);
         header.lineOrder() = Imf::RANDOM_Y;
@@ -162,7 +222,9 @@ struct ExrWriter::LibraryBackend : ExrWriter::Backend {
         for (auto const& [name, value] : spec.attributes) {
             header.insert(name, Imf::StringAttribute(value));
         }
-        Guard([&] { file = std::make_unique<Imf::TiledOutputFile>(temporary.c_str(), header, 0); });
+        header.insert(kSealAttribute, Imf::StringAttribute(kBlankSeal));
+        header.insert(kRangeAttribute, Imf::V2fAttribute(Imath::V2f(0.0f)));
+        Guard([&] { file = std::make_unique<Imf::TiledOutputFile>(stream, header, 0); });
     }
 
     Imf::PixelType GetType(size_t channel) const {
@@ -174,6 +236,8 @@ struct ExrWriter::LibraryBackend : ExrWriter::Backend {
         errno = 0;
         try {
             action();
+        } catch (std::bad_alloc const&) {
+            throw;
         } catch (std::exception const& error) {
             ThrowWriteError(path, error.what());
         }
@@ -200,12 +264,17 @@ struct ExrWriter::LibraryBackend : ExrWriter::Backend {
     }
     void Finish() override {
         Guard([&] { file.reset(); });
+        errno = stream.GetReason();
+        if (errno != 0) ThrowIoError(path, "cannot be written");
     }
     bool TakesFinishedChunks() const override { return false; }
 };
 
 ExrWriter::ExrWriter(std::string const& path, ExrSpec const& spec)
-    : _path(path), _spec(spec), _sortedChannels(spec.channels.size()), _file(path) {
+    : _path(path),
+      _spec(spec),
+      _sortedChannels(spec.channels.size()),
+      _file(std::make_unique<AtomicFile>(RequireSeeking(path))) {
     std::iota(_sortedChannels.begin(), _sortedChannels.end(), 0);
     std::sort(_sortedChannels.begin(), _sortedChannels.end(),
               [&](int a, int b) { return spec.channels[a] < spec.channels[b]; });
@@ -214,10 +283,10 @@ ExrWriter::ExrWriter(std::string const& path, ExrSpec const& spec)
                        spec.compression == ExrCompression::Zips;
     if (isOwn) {
         _backend =
-            std::make_unique<CoreBackend>(path, _file.GetTemporaryPath(), spec, _sortedChannels);
+            std::make_unique<CoreBackend>(path, _file->GetPathToWrite(), spec, _sortedChannels);
     } else {
         _backend =
-            std::make_unique<LibraryBackend>(path, _file.GetTemporaryPath(), spec, _sortedChannels);
+            std::make_unique<LibraryBackend>(path, _file->GetPathToWrite(), spec, _sortedChannels);
     }
 }
 
@@ -260,6 +329,7 @@ ExrTile ExrWriter::Pack(int level, int x, int y, float const* const* planes, siz
     kernel.splitAndPredict(scratch.words.data(), numWords, scratch.split.data(),
                            scratch.predicted.data());
     if (!scratch.compressor) scratch.compressor = libdeflate_alloc_compressor(kDeflateLevel);
+    if (!scratch.compressor) throw std::bad_alloc();
     tile.bytes.resize(numBytes);
     // A chunk that does not become smaller is stored as it is, which readers tell by its size.
     size_t const size = libdeflate_zlib_compress(scratch.compressor, scratch.predicted.data(),
@@ -289,41 +359,12 @@ void ExrWriter::Write(ExrTile const& tile) {
     _backend->Write(tile);
 }
 
-void ExrWriter::Commit() {
+std::unique_ptr<AtomicFile> ExrWriter::Seal(ValueRange const& range,
+                                            std::function<void()> const& check) {
     _backend->Finish();
-    _file.Commit();
+    if (_file->IsTemporary()) SealExr(_file->GetPathToWrite(), range, check);
+    return std::move(_file);
 }
-
-namespace {
-
-/// True if every tile of every level can be read: the file was not cut.
-bool HasAllChunks(exr_context_t context) {
-    int32_t levelsX = 0, levelsY = 0;
-    if (exr_get_tile_levels(context, 0, &levelsX, &levelsY) != EXR_ERR_SUCCESS) return false;
-    std::vector<uint8_t> bytes;
-    for (int level = 0; level < levelsX; ++level) {
-        int32_t width = 0, height = 0, tileWidth = 0, tileHeight = 0;
-        if (exr_get_level_sizes(context, 0, level, level, &width, &height) != EXR_ERR_SUCCESS ||
-            exr_get_tile_sizes(context, 0, level, level, &tileWidth, &tileHeight) !=
-                EXR_ERR_SUCCESS) {
-            return false;
-        }
-        for (int y = 0; y * tileHeight < height; ++y) {
-            for (int x = 0; x * tileWidth < width; ++x) {
-                exr_chunk_info_t chunk;
-                if (exr_read_tile_chunk_info(context, 0, x, y, level, level, &chunk) !=
-                    EXR_ERR_SUCCESS)
-                    return false;
-                bytes.resize(chunk.packed_size);
-                if (exr_read_chunk(context, 0, &chunk, bytes.data()) != EXR_ERR_SUCCESS)
-                    return false;
-            }
-        }
-    }
-    return true;
-}
-
-}  // namespace
 
 std::vector<std::pair<std::string, std::string>> ReadExrAttributes(std::string const& path,
                                                                    std::string const& prefix) {
@@ -332,10 +373,6 @@ std::vector<std::pair<std::string, std::string>> ReadExrAttributes(std::string c
     initializer.error_handler_fn = [](exr_const_context_t, exr_result_t, char const*) {};
     exr_context_t context = nullptr;
     if (exr_start_read(&context, path.c_str(), &initializer) != EXR_ERR_SUCCESS) return found;
-    if (!HasAllChunks(context)) {
-        exr_finish(&context);
-        return found;
-    }
     int32_t count = 0;
     exr_get_attribute_count(context, 0, &count);
     for (int32_t i = 0; i < count; ++i) {

@@ -9,7 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/io/file.h"
+#include "engine/images/exr_seal.h"
+#include "engine/io/atomic_file.h"
 
 namespace limn::engine {
 
@@ -42,13 +43,13 @@ struct ExrTile {
 
 /// A tiled EXR file that appears complete or not at all. Tiles are compressed wherever they were
 /// made (Pack, any thread) and written one after the other (Write, one thread at a time), in the
-/// order of the calls, which the file keeps (RANDOM_Y).
+/// order of the calls, which the file keeps (RANDOM_Y). A finished file is sealed (exr_seal.h).
 ///
 /// ZIP, ZIPS and uncompressed tiles are finished here and handed to OpenEXR Core as chunks; the
 /// other kinds go through OpenEXR's own compressors when they are written.
 class ExrWriter {
 public:
-    /// \throws Error  Io
+    /// \throws Error  Io.  BadOption: the path leads to what cannot seek, /dev/null aside
     ExrWriter(std::string const& path, ExrSpec const& spec);
     ~ExrWriter();
 
@@ -64,8 +65,13 @@ public:
     /// \throws Error  Io: a full disk, ...
     void Write(ExrTile const& tile);
 
-    /// Writes the file's index and gives it its name. \throws Error Io
-    void Commit();
+    /// Writes the file's index and seals it. Called once, as the last.
+    ///
+    /// \param check  called now and then; what it throws ends the work
+    /// \return       the complete file, to be committed by the caller
+    /// \throws Error  Io
+    std::unique_ptr<AtomicFile> Seal(ValueRange const& range,
+                                     std::function<void()> const& check = {});
 
 private:
     struct Backend;
@@ -75,15 +81,21 @@ private:
     std::string _path;
     ExrSpec _spec;
     std::vector<int> _sortedChannels;  // EXR keeps channels sorted by name
-    AtomicFile _file;
+    std::unique_ptr<AtomicFile> _file;
     std::unique_ptr<Backend> _backend;
     mutable std::mutex _emptyMutex;
     mutable std::map<std::pair<int, int>, std::vector<uint8_t>> _emptyTiles;  // by size
 };
 
+/// Refuses a path that leads to what cannot seek, such as a pipe; the null device need not.
+///
+/// \return        the path
+/// \throws Error  BadOption
+std::string const& RequireSeeking(std::string const& path);
+
 /// String attributes of an EXR file's header whose names start with `prefix`.
 ///
-/// \return empty if the file does not exist, is no EXR file or ends before its last chunk
+/// \return empty if the file does not exist or is no EXR file
 std::vector<std::pair<std::string, std::string>> ReadExrAttributes(std::string const& path,
                                                                    std::string const& prefix);
 

@@ -8,12 +8,13 @@ namespace limn::engine {
 /// What limn uses OpenImageIO for. It takes 0.2 s to load, so it sits in a module of its own
 /// (limn_images.so) that is loaded when a run first asks for it.
 struct ImagesModule {
-    /// Writes 8-bit RGB as PNG, row by row from the top: fillRow(user, row, rgb), until it returns
-    /// false. `texts` are pairs of keyword and text. On failure returns false and puts the reason
-    /// into `reason`.
-    bool (*writePng)(char const* path, int width, int height,
-                     bool (*fillRow)(void* user, int row, unsigned char* rgb), void* user,
-                     char const* const* texts, size_t numTexts, char* reason, size_t reasonSize);
+    /// Makes a PNG file of 8-bit RGB, row by row from the top: fillRow(user, row, rgb), and hands
+    /// out its bytes: take(user, bytes, size), until one of them returns false. `texts` are pairs
+    /// of keyword and text. On failure returns false and puts the reason into `reason`.
+    bool (*encodePng)(int width, int height,
+                      bool (*fillRow)(void* user, int row, unsigned char* rgb),
+                      bool (*take)(void* user, void const* bytes, size_t size), void* user,
+                      char const* const* texts, size_t numTexts, char* reason, size_t reasonSize);
 
     /// Reads the first channel of an image of any format, rows from the top. `allocate(user, width,
     /// height)` makes room for it. On failure as above.

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include "engine/images/images_module.h"
@@ -14,17 +15,36 @@ bool Fail(std::string const& why, char* reason, size_t reasonSize) {
     return false;
 }
 
-/// The file's name ends in .tmp, so the format is named rather than guessed.
-bool WritePng(char const* path, int width, int height,
-              bool (*fillRow)(void* user, int row, unsigned char* rgb), void* user,
-              char const* const* texts, size_t numTexts, char* reason, size_t reasonSize) {
+/// What OpenImageIO takes for a file.
+class Taker : public OIIO::Filesystem::IOProxy {
+public:
+    using Take = bool (*)(void* user, void const* bytes, size_t size);
+
+    Taker(Take take, void* user) : IOProxy("", Write), _take(take), _user(user) {}
+
+    char const* proxytype() const override { return "taker"; }
+    size_t write(void const* bytes, size_t size) override {
+        m_pos += static_cast<int64_t>(size);
+        return _take(_user, bytes, size) ? size : 0;
+    }
+
+private:
+    Take _take;
+    void* _user;
+};
+
+bool EncodePng(int width, int height, bool (*fillRow)(void* user, int row, unsigned char* rgb),
+               Taker::Take take, void* user, char const* const* texts, size_t numTexts,
+               char* reason, size_t reasonSize) {
     auto const output = OIIO::ImageOutput::create("png");
     if (!output) return Fail(OIIO::geterror(), reason, reasonSize);
     OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
     // Pictures of maps are smooth: more than this saves a tenth and takes twice as long.
     spec.attribute("png:compressionLevel", 3);
     for (size_t i = 0; i < numTexts; ++i) spec.attribute(texts[2 * i], texts[2 * i + 1]);
-    if (!output->open(path, spec)) return Fail(output->geterror(), reason, reasonSize);
+    Taker taker(take, user);
+    if (!output->set_ioproxy(&taker) || !output->open("", spec))
+        return Fail(output->geterror(), reason, reasonSize);
     std::vector<unsigned char> rgb(3 * static_cast<size_t>(width));
     for (int row = 0; row < height; ++row) {
         if (!fillRow(user, row, rgb.data())) return Fail("stopped", reason, reasonSize);
@@ -50,6 +70,6 @@ bool ReadFirstChannel(char const* path, float* (*allocate)(void*, int, int), voi
 }  // namespace
 
 extern "C" limn::engine::ImagesModule const* limn_images_module() {
-    static limn::engine::ImagesModule const module{WritePng, ReadFirstChannel};
+    static limn::engine::ImagesModule const module{EncodePng, ReadFirstChannel};
     return &module;
 }

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "engine/images/images_module.h"
-#include "engine/io/file.h"
 #include "far_ext/error.h"
 
 namespace limn::engine {
@@ -19,20 +18,29 @@ namespace {
 
 constexpr size_t kLongestText = 1 << 16;
 
-/// What the module calls for each row; it is no place to throw through.
-struct RowSource {
+/// What the module calls; it is no place to throw through.
+struct PngCallbacks {
     std::function<void(int row, uint8_t* rgb)> const& fillRow;
+    AtomicFile& file;
     std::exception_ptr failure{};
 
-    static bool Fill(void* user, int row, unsigned char* rgb) {
-        auto& source = *static_cast<RowSource*>(user);
+    template <class Act>
+    bool Try(Act act) {
         try {
-            source.fillRow(row, rgb);
-            return true;
+            if (!failure) act();
         } catch (...) {
-            source.failure = std::current_exception();
-            return false;
+            failure = std::current_exception();
         }
+        return !failure;
+    }
+
+    static bool Fill(void* user, int row, unsigned char* rgb) {
+        auto& self = *static_cast<PngCallbacks*>(user);
+        return self.Try([&] { self.fillRow(row, rgb); });
+    }
+    static bool Take(void* user, void const* bytes, size_t size) {
+        auto& self = *static_cast<PngCallbacks*>(user);
+        return self.Try([&] { self.file.Write({static_cast<char const*>(bytes), size}); });
     }
 };
 
@@ -44,33 +52,31 @@ uint32_t ReadBigEndian(std::array<char, 4> const& bytes) {
 
 }  // namespace
 
-void WritePng(std::string const& path, Picture const& picture, PngTexts const& texts) {
+void WritePng(AtomicFile& file, Picture const& picture, PngTexts const& texts) {
     size_t const rowSize = 3 * static_cast<size_t>(picture.GetWidth());
     WritePngRows(
-        path, picture.GetWidth(), picture.GetHeight(),
+        file, picture.GetWidth(), picture.GetHeight(),
         [&](int row, uint8_t* rgb) {
             std::copy_n(picture.GetPixels() + static_cast<size_t>(row) * rowSize, rowSize, rgb);
         },
         texts);
 }
 
-void WritePngRows(std::string const& path, int width, int height,
+void WritePngRows(AtomicFile& file, int width, int height,
                   std::function<void(int row, uint8_t* rgb)> const& fillRow,
                   PngTexts const& texts) {
-    AtomicFile file(path);
-    ImagesModule const& images = LoadImagesModule();
     std::vector<char const*> words;
     for (auto const& [key, text] : texts) words.insert(words.end(), {key.c_str(), text.c_str()});
-    RowSource source{fillRow};
+    PngCallbacks callbacks{fillRow, file};
     std::array<char, 512> reason{};
-    bool const isWritten =
-        images.writePng(file.GetTemporaryPath().c_str(), width, height, RowSource::Fill, &source,
-                        words.data(), words.size() / 2, reason.data(), reason.size());
-    if (source.failure) std::rethrow_exception(source.failure);
+    bool const isWritten = LoadImagesModule().encodePng(
+        width, height, PngCallbacks::Fill, PngCallbacks::Take, &callbacks, words.data(),
+        words.size() / 2, reason.data(), reason.size());
+    if (callbacks.failure) std::rethrow_exception(callbacks.failure);
     if (!isWritten) {
-        throw Error(ErrorCode::Io, fmt::format("'{}' cannot be written: {}", path, reason.data()));
+        throw Error(ErrorCode::Io,
+                    fmt::format("'{}' cannot be written: {}", file.GetPath(), reason.data()));
     }
-    file.Commit();
 }
 
 PngTexts ReadPngTexts(std::string const& path) {

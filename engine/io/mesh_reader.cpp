@@ -12,6 +12,7 @@
 #include "engine/io/obj_reader.h"
 #include "engine/io/off_reader.h"
 #include "engine/io/ply_reader.h"
+#include "engine/scene/sha256.h"
 #include "far_ext/error.h"
 
 namespace limn::engine {

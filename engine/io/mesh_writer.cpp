@@ -283,24 +283,13 @@ std::vector<std::string> MeshSequence::Add(std::string const& path, Scene const&
 }
 
 void MeshSequence::Add(std::string const& path, std::string const& bytes) {
-    Reserve(path);
-    _files.back()->Write(bytes);
+    AtomicFile& file = Open(path);
+    file.Write(bytes);
+    file.Finish();
 }
 
-std::string const& MeshSequence::Reserve(std::string const& path) {
-    _files.push_back(std::make_unique<AtomicFile>(path));
-    _paths.push_back(path);
-    return _files.back()->GetTemporaryPath();
-}
-
-void MeshSequence::Commit() {
-    size_t numDone = 0;
-    try {
-        for (; numDone < _files.size(); ++numDone) _files[numDone]->Commit();
-    } catch (...) {
-        for (size_t i = 0; i < numDone; ++i) std::remove(_paths[i].c_str());
-        throw;
-    }
+AtomicFile& MeshSequence::Open(std::string const& path) {
+    return *_files.emplace_back(std::make_unique<AtomicFile>(path));
 }
 
 }  // namespace limn::engine

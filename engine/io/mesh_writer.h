@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/file.h"
+#include "engine/io/atomic_file.h"
 #include "engine/scene/scene.h"
 
 namespace limn::engine {
@@ -45,16 +45,15 @@ public:
     /// Writes another file under a temporary name. \throws Error Io
     void Add(std::string const& path, std::string const& bytes);
 
-    /// Makes room for a file that someone else writes. Returns its temporary name. \throws Error Io
-    std::string const& Reserve(std::string const& path);
+    /// Opens a file that someone else writes before Commit. \throws Error Io
+    AtomicFile& Open(std::string const& path);
 
     /// Gives all of them their names. \throws Error Io; then none is left
-    void Commit();
+    void Commit() { CommitTogether(_files); }
 
 private:
     Precision _precision;
     std::vector<std::unique_ptr<AtomicFile>> _files;
-    std::vector<std::string> _paths;
 };
 
 }  // namespace limn::engine

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "engine/scene/content_hash.h"
 #include "engine/scene/scene_checks.h"
 #include "far_ext/error.h"
 #include "far_ext/topology/refiner.h"
@@ -15,8 +16,8 @@ Model Model::Build(Scene scene) {
         CheckScene(scene);
         return far_ext::CreateRefiner(scene.cage);
     });
-    auto points = std::make_shared<Points const>(
-        Points{std::exchange(scene.positions, {}), std::exchange(scene.sha256, {})});
+    std::shared_ptr<Points const> points(
+        new Points{std::exchange(scene.positions, {}), std::exchange(scene.sha256, {})});
     scene.normals.clear();  // for writers only: limits have their own
     return {std::make_shared<Parts const>(Parts{std::move(scene), std::move(refiner)}),
             std::move(points)};
@@ -25,14 +26,21 @@ Model Model::Build(Scene scene) {
 Model Model::WithPoints(std::vector<double> positions, std::string sha256) const {
     NamingMesh(GetPath(), [&] { CheckPositions(GetCage(), positions); });
     return {_parts,
-            std::make_shared<Points const>(Points{std::move(positions), std::move(sha256)})};
+            std::shared_ptr<Points const>(new Points{std::move(positions), std::move(sha256)})};
 }
 
 Scene Model::MakeScene() const {
     Scene scene = _parts->scene;
     scene.positions = _points->positions;
-    scene.sha256 = _points->sha256;
     return scene;
+}
+
+std::string const& Model::GetSha256() const {
+    std::call_once(_points->isHashed, [this] {
+        if (_points->sha256.empty())
+            _points->sha256 = HashContent(_parts->scene, _points->positions);
+    });
+    return _points->sha256;
 }
 
 }  // namespace limn::engine

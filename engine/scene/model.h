@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -31,16 +32,20 @@ public:
     /// The same mesh with other positions: topology, refiner, UVs and all the rest are shared.
     ///
     /// \param positions  3 per vertex
-    /// \param sha256     what GetSha256 is to be from now on
+    /// \param sha256     of the bytes that these positions come from; empty: they are from arrays
     /// \throws Error     BadMesh as Build does
     Model WithPoints(std::vector<double> positions, std::string sha256 = {}) const;
 
-    /// A scene to change or to write: a copy of everything.
+    /// A scene to change or to write: a copy of everything but the checksum, since what is built
+    /// from it later is another mesh.
     Scene MakeScene() const;
 
     std::string const& GetPath() const { return _parts->scene.path; }
     std::string const& GetName() const { return _parts->scene.name; }
-    std::string const& GetSha256() const { return _points->sha256; }
+
+    /// SHA-256 of the bytes that the mesh was read from or, of one from arrays, of its content
+    /// (content_hash.h), as 64 hexadecimal digits: what tells it from other meshes of its name.
+    std::string const& GetSha256() const;
 
     far_ext::ControlMesh const& GetCage() const { return _parts->scene.cage; }
     std::vector<double> const& GetPositions() const { return _points->positions; }
@@ -75,7 +80,8 @@ private:
     };
     struct Points {
         std::vector<double> positions;
-        std::string sha256;
+        mutable std::string sha256;  ///< where none is given: made when first asked for
+        mutable std::once_flag isHashed{};
     };
 
     Model(std::shared_ptr<Parts const> parts, std::shared_ptr<Points const> points)

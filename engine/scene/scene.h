@@ -40,7 +40,7 @@ struct WeldRecord {
 struct Scene {
     std::string path;    ///< as the user gave it, for messages
     std::string name;    ///< file stem
-    std::string sha256;  ///< of the input bytes, hexadecimal
+    std::string sha256;  ///< of the input bytes, hexadecimal; empty: of what is in the arrays
 
     far_ext::ControlMesh cage;      ///< fvar channel 0 holds the UVs where there are any
     std::vector<double> positions;  ///< 3 per vertex

@@ -15,27 +15,24 @@ namespace {
 namespace fs = std::filesystem;
 using namespace test::cli;
 
-TEST_F(Cli, MissingLastFolderIsMade) {
-    EXPECT_EQ(Bake(Shape("catmark_cube"), "new/a.exr").status, 0);
-    EXPECT_TRUE(fs::exists(folder / "new/a.exr"));
+TEST_F(Cli, MissingFoldersAreMade) {
+    EXPECT_EQ(Bake(Shape("catmark_cube"), "new/{map}/<UDIM>/a.exr",
+                   {"--maps", "mean,normal", "--report", folder / "reports/1/r.json"})
+                  .status,
+              0);
+    for (char const* path : {"new/mean/1001/a.exr", "new/normal/1001/a.exr", "reports/1/r.json"})
+        EXPECT_TRUE(fs::exists(folder / path)) << path;
 }
 
-TEST_F(Cli, FolderMadeForABakeThatFailsGoesAgain) {
+TEST_F(Cli, FoldersMadeForABakeThatFailsGoAgain) {
     std::string const mesh = folder.Write(
         "m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt .5 .5\nvt .5001 .5\nvt .5 .5001\nf 1/1 2/2 3/3\n");
     Words const two{"--maps", "mean,normal", "--size", "8"};
-    ExpectError(Bake(mesh, "new/{map}.exr", two), 3, "no texel is covered");
+    ExpectError(Bake(mesh, "new/er/{map}.exr", two), 3, "no texel is covered");
     EXPECT_EQ(folder.List(), (Words{"m.obj"}));
     fs::create_directory(folder / "old");
     ExpectError(Bake(mesh, "old/{map}.exr", two), 3, "no texel is covered");
     EXPECT_EQ(folder.List(), (Words{"m.obj", "old"}));
-}
-
-TEST_F(Cli, MissingParentFolderIsStatus5) {
-    ExpectError(Bake(Shape("catmark_cube"), "no/such/a.exr"), 5, "no' does not exist");
-    ExpectError(Limn({"refine", Shape("catmark_cube"), "-o", folder / "no/such/a.obj"}), 5,
-                "no' does not exist");
-    EXPECT_TRUE(folder.List().empty());
 }
 
 TEST_F(Cli, FileWhereAFolderShouldBeIsStatus5) {
@@ -117,10 +114,26 @@ TEST_F(Cli, FullStdoutIsStatus5) {
         ExpectError(Limn(words, full), 5, "'stdout' cannot be written: No space left on device");
 }
 
-TEST_F(Cli, ReportThatCannotBeWrittenIsStatus5WithoutOutput) {
-    ExpectError(Bake(Shape("catmark_cube"), "a.exr", {"--report", folder / "no/such/r.json"}), 5,
-                "no' does not exist");
+TEST_F(Cli, MeasureWritesNoFilesWhereStdoutTakesNothing) {
+    ExpectError(Limn({"measure", Shape("catmark_cube"), "-o", folder / "new/a", "--picture"},
+                     {.stdoutPath = "/dev/full"}),
+                5, "'stdout' cannot be written");
     EXPECT_TRUE(folder.List().empty());
+}
+
+TEST_F(Cli, ReportThatCannotBeWrittenIsStatus5WithoutOutput) {
+    folder.Write("file", "x");
+    ExpectError(Bake(Shape("catmark_cube"), "a.exr", {"--report", folder / "file/r.json"}), 5,
+                "Not a directory");
+    EXPECT_EQ(folder.List(), (Words{"file"}));
+}
+
+TEST_F(Cli, NameOf255BytesIsWrittenAndALongerOneRefused) {
+    std::string const longest = std::string(251, 'n') + ".exr";
+    EXPECT_EQ(Bake(Shape("catmark_cube"), longest).status, 0);
+    EXPECT_EQ(folder.List(), (Words{longest}));
+    ExpectError(Bake(Shape("catmark_cube"), "n" + longest), 5, "File name too long");
+    EXPECT_EQ(folder.List(), (Words{longest}));
 }
 
 }  // namespace

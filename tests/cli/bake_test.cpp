@@ -218,6 +218,48 @@ TEST_F(SkipExisting, BakesAnewWhereTheFileIsNotComplete) {
     }
 }
 
+TEST_F(SkipExisting, BakesAnewWhereAByteChanged) {
+    std::string const whole = test::ReadText(folder / "a.exr");
+    for (size_t at : {whole.size() / 2, whole.size() - 3}) {
+        std::string changed = whole;
+        changed[at] = static_cast<char>(changed[at] ^ 1);
+        test::WriteText(folder / "a.exr", changed);
+        EXPECT_TRUE(Rebakes({})) << at;
+        EXPECT_TRUE(test::ReadText(folder / "a.exr") == whole) << at;
+    }
+}
+
+TEST_F(SkipExisting, BakesAnewWhereAnotherTileHasTheName) {
+    // Two tiles with one and the same picture.
+    std::string const mesh = folder.Write(
+        "m.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 3 0 0\nv 3 1 0\nv 2 1 0\n"
+        "vt .1 .1\nvt .9 .1\nvt .9 .9\nvt .1 .9\nvt 1.1 .1\nvt 1.9 .1\nvt 1.9 .9\nvt 1.1 .9\n"
+        "f 1/1 2/2 3/3 4/4\nf 5/5 6/6 7/7 8/8\n");
+    Words const more{"--skip-existing", "--maps", "normal", "--report", folder / "r.json"};
+    ASSERT_EQ(Bake(mesh, "<UDIM>.exr", more).status, 0);
+    fs::copy_file(folder / "1001.exr", folder / "1002.exr", fs::copy_options::overwrite_existing);
+    ASSERT_EQ(Bake(mesh, "<UDIM>.exr", more).status, 0);
+    EXPECT_EQ(Report()["outputs"][0]["skipped"], true);
+    EXPECT_EQ(Report()["outputs"][1]["skipped"], false);
+}
+
+TEST_F(SkipExisting, TellsTheRangesOfWhatItSkips) {
+    for (Words const& more : {Words{"--maps", "mean"}, {"--maps", "mean,k1", "--half", "--mip"}}) {
+        ASSERT_EQ(Bake(Shape("catmark_cube"), "b.exr", more + Words{"--report", folder / "r.json"})
+                      .status,
+                  0);
+        json first = Report()["outputs"];
+        ASSERT_EQ(Bake(Shape("catmark_cube"), "b.exr",
+                       more + Words{"--skip-existing", "--report", folder / "r.json"})
+                      .status,
+                  0);
+        EXPECT_EQ(first[0]["skipped"], false);
+        first[0]["skipped"] = true;
+        EXPECT_EQ(Report()["outputs"], first);
+    }
+}
+
 TEST_F(SkipExisting, MakesThePreviewThatIsMissing) {
     EXPECT_FALSE(fs::exists(folder / "a.png"));
     ASSERT_EQ(BakeAgain({"--preview"}).status, 0);

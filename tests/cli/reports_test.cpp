@@ -3,6 +3,7 @@
 // Reports and progress.
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <regex>
 
@@ -58,7 +59,101 @@ TEST_F(Reports, OfEveryVerbHaveTheSharedKeys) {
         EXPECT_EQ(report["inputs"][0]["sha256"], engine::Sha256OfFile(mesh));
         EXPECT_TRUE(report["warnings"].is_array());
         EXPECT_GE(report["seconds"].get<double>(), 0.0);
+        EXPECT_GT(report["peak_bytes"].get<size_t>(), 1u << 20);
+        EXPECT_EQ(report["exit_status"], 0);
+        EXPECT_TRUE(report["error"].is_null());
+        EXPECT_TRUE(report["effective_options"].is_object());
     }
+}
+
+TEST_F(Reports, TellEveryOptionAsItIsInEffect) {
+    ASSERT_EQ(Bake(mesh, "a.exr",
+                   {"--half", "--encode", "2,1", "--report", folder / "r.json", "--threads", "2"})
+                  .status,
+              0);
+    json const options = Report()["effective_options"];
+    json const expected{// as given
+                        {"size", "64"},
+                        {"maps", {"mean"}},
+                        {"half", "all"},
+                        {"encode", "2,1"},
+                        {"threads", 2},
+                        {"output", folder / "a.exr"},
+                        // by default
+                        {"padding", 16},
+                        {"audit-bound", 1e-3},
+                        {"mip", false},
+                        {"groups", json::array()},
+                        {"seam-bound", json::array()},
+                        {"noise-gain", 0.5},
+                        {"compression", "zip"},
+                        {"orientation", "right"},
+                        {"against", nullptr},
+                        // by the mesh
+                        {"scheme", "catmark"},
+                        {"boundary", "edge-and-corner"}};
+    for (auto const& [name, value] : expected.items()) EXPECT_EQ(options[name], value) << name;
+}
+
+TEST_F(Reports, ListTheOptionsOfTheVerbsHelp) {
+    for (auto const& [verb, words] : runs) {
+        ASSERT_EQ(Limn(words + Words{"--report", folder / "r.json"}).status, 0);
+        json const options = Report()["effective_options"];
+        std::string const help = Limn({verb, "--help"}).out;
+        std::regex const flag("\n  (?:-\\w,)?--([a-z-]+)");
+        size_t count = 0;
+        for (std::sregex_iterator at(help.begin(), help.end(), flag), end; at != end; ++at) {
+            std::string const name = (*at)[1];
+            if (name == "help") continue;
+            EXPECT_TRUE(options.contains(name)) << verb << " --" << name;
+            ++count;
+        }
+        EXPECT_EQ(options.size(), count) << verb;
+    }
+}
+
+TEST_F(Reports, AreWrittenOfRunsThatFail) {
+    std::string const report = folder / "r.json";
+    std::string const bad = folder.Write("bad.obj", "v 0 0 nonsense\n");
+    std::string const cube = Shape("catmark_cube");
+    struct Failure {
+        Words words;
+        int status;
+    };
+    for (auto const& [words, status] :
+         std::vector<Failure>{{{"info", bad}, 3},
+                              {{"refine", folder / "none.obj", "-o", folder / "a.obj"}, 5},
+                              {{"fit", mesh, "-o", folder / "a.obj", "--max-iterations", "1",
+                                "--tolerance", "1e-12", "--method", "progressive"},
+                               4}}) {
+        Outcome const outcome = Limn(words + Words{"--report", report});
+        std::string const line = ExpectError(outcome, status, "limn: error: ");
+        EXPECT_EQ(Report()["exit_status"], status);
+        EXPECT_EQ("limn: error: " + Report()["error"].get<std::string>(), line);
+        EXPECT_EQ(Report()["command"], words[0]);
+        EXPECT_EQ(folder.List(), (Words{"bad.obj", "p.csv", "r.json"}));
+        std::filesystem::remove(report);
+    }
+}
+
+TEST_F(Reports, AreNotWrittenWhereTheCommandIsWrong) {
+    Outcome const outcome =
+        Bake(mesh, "a.exr", {"--maps", "nonsense", "--report", folder / "r.json"});
+    ExpectError(outcome, 2, "nonsense");
+    EXPECT_EQ(folder.List(), (Words{"p.csv"}));
+}
+
+TEST_F(Reports, SayWhichMeshAnOutputIsOf) {
+    std::string const cube = Shape("catmark_cube");
+    ASSERT_EQ(Limn({"bake", mesh, cube, "-o", folder / "{mesh}.exr", "--maps", "mean", "--size",
+                    "32", "--preview", "--report", folder / "r.json"})
+                  .status,
+              0);
+    json const report = Report();
+    EXPECT_EQ(report["outputs"][0]["mesh"], mesh);
+    EXPECT_EQ(report["outputs"][1]["mesh"], cube);
+    EXPECT_EQ(report["previews"],
+              json({folder / "catmark_torus.png", folder / "catmark_cube.png"}));
 }
 
 TEST_F(Reports, GoToStdoutWhereTheVerbWritesFilesOnly) {

@@ -48,10 +48,10 @@ struct Answer {
 };
 
 Answer Hear(Words const& arguments, engine::MeshSource& meshes,
-            std::function<bool()> const& isStopped = {}) {
+            std::function<int()> const& getStopStatus = {}) {
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();
-    int const status = RunCommand(arguments, meshes, isStopped);
+    int const status = RunCommand(arguments, meshes, getStopStatus);
     return {status, testing::internal::GetCapturedStdout(), testing::internal::GetCapturedStderr()};
 }
 
@@ -132,8 +132,8 @@ TEST(RunCommand, ItStopsWhenAskedToAndLeavesNothing) {
     CubeSource cubes([&] { isStopped = true; });
     auto const answer =
         Hear({"bake", "cube", "-o", folder / "x.exr", "--maps", "mean", "--size", "64"}, cubes,
-             [&] { return isStopped.load(); });
-    EXPECT_EQ(answer.status, kStopped);
+             [&] { return isStopped ? 143 : 0; });
+    EXPECT_EQ(answer.status, 143);
     EXPECT_EQ(answer.err, "limn: error: interrupted; nothing half-written is left\n");
     EXPECT_TRUE(folder.List().empty());
 }

@@ -3,12 +3,14 @@
 // Runs that are interrupted or killed, and what is left of them.
 
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <thread>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include "engine/io/file.h"
 #include "support/cli.h"
 
 namespace limn {
@@ -55,39 +57,88 @@ TEST_P(Signal, LeavesAnOlderFileAsItWas) {
     EXPECT_EQ(test::ReadText(folder / "a.exr"), "an older bake");
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Signal, testing::Values(SIGINT, SIGTERM),
-                         [](testing::TestParamInfo<int> const& instance) {
-                             return instance.param == SIGINT ? "Interrupt" : "Terminate";
-                         });
-
-TEST_F(Cli, TemporariesOfDeadProcessesOfThisHostAreSwept) {
-    char host[256] = {};
-    ASSERT_EQ(::gethostname(host, sizeof host - 1), 0);
-    pid_t const dead = ::fork();
-    if (dead == 0) ::_exit(0);
-    ::waitpid(dead, nullptr, 0);
-    folder.Write(fmt::format(".a.exr.{}.{}.tmp", host, dead), "x");
-    folder.Write(fmt::format(".other.obj.{}.{}.tmp", host, dead), "x");
-    std::string const alive = fmt::format(".a.exr.{}.{}.tmp", host, ::getpid());
-    std::string const elsewhere = fmt::format(".a.exr.not-{}.{}.tmp", host, dead);
-    Words expected{alive, elsewhere, ".user.tmp", "b.exr",
-                   fmt::format("visible.{}.{}.tmp", host, dead)};
-    for (std::string const& name : {expected[0], expected[1], expected[2], expected[4]})
-        folder.Write(name, "x");
-    ASSERT_EQ(Bake(Shape("catmark_cube"), "b.exr").status, 0);
-    std::sort(expected.begin(), expected.end());
-    EXPECT_EQ(folder.List(), expected);
+std::string NameSignal(testing::TestParamInfo<int> const& instance) {
+    switch (instance.param) {
+        case SIGINT:
+            return "Interrupt";
+        case SIGTERM:
+            return "Terminate";
+        default:
+            return "HangUp";
+    }
 }
 
-TEST_F(Cli, KilledBakeLeavesATemporaryThatTheNextRunSweeps) {
-    {
-        auto const process = StartLongBake(folder);
-        process->Send(SIGKILL);
-        EXPECT_EQ(process->Wait().status, -SIGKILL);
-    }
-    ASSERT_EQ(folder.List().size(), 1u);
-    ASSERT_EQ(Bake(Shape("catmark_cube"), "a.exr").status, 0);
+INSTANTIATE_TEST_SUITE_P(Of, Signal, testing::Values(SIGINT, SIGTERM, SIGHUP), NameSignal);
+
+TEST_F(Cli, HangUpThatIsIgnoredStaysSo) {
+    Words const words{
+        LIMN_PROGRAM, "bake", Shape("catmark_cube"), "-o", folder / "a.exr", "--maps", "mean",
+        "--size",     "512",  "--samples",           "4",  "--quiet"};
+    test::Process process(words, {.ignoredSignal = SIGHUP});
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    process.Send(SIGHUP);
+    EXPECT_EQ(process.Wait().status, 0);
     EXPECT_EQ(folder.List(), (Words{"a.exr"}));
+}
+
+TEST_F(Cli, InterruptedBakeReportsTheFilesThatStay) {
+    // Few texels in the first tile, and a minute's worth of them in the second.
+    std::string const mesh = folder.Write(
+        "m.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+        "vt .1 .1\nvt .12 .1\nvt .12 .12\nvt .1 .12\nvt 1.1 .1\nvt 1.9 .1\nvt 1.9 .9\nvt 1.1 .9\n"
+        "v 2 0 0\nv 3 0 0\nv 3 1 0\nv 2 1 0\nf 1/1 2/2 3/3 4/4\nf 5/5 6/6 7/7 8/8\n");
+    test::Process process({LIMN_PROGRAM, "bake", mesh, "-o", folder / "<UDIM>.exr", "--maps",
+                           "mean", "--size", "1024", "--samples", "16", "--threads", "2",
+                           "--report", folder / "r.json"});
+    auto const first = folder / "1001.exr";
+    for (int i = 0; i < 60000 && !std::filesystem::exists(first); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    process.Send(SIGTERM);
+    ExpectError(process.Wait(), 143, "interrupted");
+    EXPECT_EQ(folder.List(), (Words{"1001.exr", "m.obj", "r.json"}));
+    json const report = Report();
+    EXPECT_EQ(report["exit_status"], 143);
+    EXPECT_TRUE(Contains(report["error"], "interrupted"));
+    ASSERT_EQ(report["outputs"].size(), 1u);
+    EXPECT_EQ(report["outputs"][0]["file"], first);
+    EXPECT_EQ(report["outputs"][0]["sha256"], engine::Sha256OfFile(first));
+}
+
+TEST_F(Cli, PipeThatNobodyWritesToCanBeInterrupted) {
+    std::string const pipe = folder / "mesh.obj";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    test::Process process(
+        {LIMN_PROGRAM, "refine", pipe, "-o", folder / "a.obj", "--report", folder / "r.json"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    process.Send(SIGINT);
+    ExpectError(process.Wait(), 130, "interrupted");
+    EXPECT_EQ(folder.List(), (Words{"mesh.obj", "r.json"}));
+    EXPECT_EQ(Report()["exit_status"], 130);
+}
+
+TEST_F(Cli, PipeThatNobodyReadsCanBeInterrupted) {
+    std::string const pipe = folder / "a.obj";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    test::Process process({LIMN_PROGRAM, "refine", Shape("catmark_cube"), "-o", pipe});
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    process.Send(SIGINT);
+    ExpectError(process.Wait(), 130, "interrupted");
+}
+
+TEST_F(Cli, FullStderrThatNobodyReadsCanBeInterrupted) {
+    std::string const pipe = folder / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    int const end = ::open(pipe.c_str(), O_RDWR | O_NONBLOCK);
+    while (::write(end, "x", 1) == 1) continue;
+    test::Process process({LIMN_PROGRAM, "bake", Shape("catmark_cube"), "-o", folder / "a.exr",
+                           "--maps", "mean,normal"},  // warns that all go into one file
+                          {.stderrPath = pipe});
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    process.Send(SIGINT);
+    EXPECT_EQ(process.Wait().status, 130);
+    EXPECT_EQ(folder.List(), (Words{"pipe"}));
+    ::close(end);
 }
 
 }  // namespace

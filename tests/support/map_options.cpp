@@ -29,9 +29,8 @@ engine::BakeOptions OptionsForAllMaps(engine::Model const& model) {
     for (size_t i = 0; i < sheared.size(); i += 3) sheared[i] += 0.3 * sheared[i + 1];
     options.rest = model.WithPoints(std::move(sheared));
     options.field.emplace();
-    options.field->values.assign(static_cast<size_t>(model.GetLevel().GetNumEdges()), 0.0);
-    for (size_t edge = 0; edge < options.field->values.size(); ++edge) {
-        options.field->values[edge] = static_cast<double>(edge % 7) - 3.0;
+    for (Index edge = 0; edge < model.GetLevel().GetNumEdges(); ++edge) {
+        options.field->push_back(static_cast<double>(edge % 7) - 3.0);
     }
     options.noise.octaves = 2;
     return options;

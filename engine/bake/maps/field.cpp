@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "engine/bake/maps/map_table.h"
+#include "engine/scene/content_hash.h"
 #include "eval/forms/field_surface.h"
 #include "far_ext/error.h"
 
@@ -56,7 +57,7 @@ public:
     void Prepare(BakedSurface const& baked, Job&) override {
         _field =
             std::make_unique<eval::FieldSurface>(baked.model.GetCage(), baked.model.GetPositions(),
-                                                 _options.field->values, ChooseLevels(baked));
+                                                 *_options.field, ChooseLevels(baked));
     }
 
     std::unique_ptr<MapSampler> MakeSampler() const override {
@@ -127,7 +128,7 @@ std::unique_ptr<Map> MakeFieldMap(std::string const& name, MapOptions const& opt
         traits.groups = {{0, traits.GetNumChannels(), Averaging::UnitVector}};
         if (!isFlow) traits.range = RangeKind::UnitVector;
     }
-    traits.optionText = fmt::format("field={} flow={} normalize={}", options.field->sha256,
+    traits.optionText = fmt::format("field={} flow={} normalize={}", HashNumbers(*options.field),
                                     isFlow ? "uv" : "object", options.isNormalized);
     return std::make_unique<FieldMap>(std::move(traits), options);
 }

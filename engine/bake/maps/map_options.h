@@ -19,22 +19,16 @@ struct Encoding {
     double scale = 1.0, offset = 0.0;
 };
 
-/// A 1-form on the edges of the control mesh, and the SHA-256 of what it was read from.
-struct EdgeField {
-    std::vector<double> values;
-    std::string sha256;
-};
-
 /// Which maps, and what they are made of: each takes what concerns it.
 struct MapOptions {
-    std::vector<std::string> maps;        ///< names, as ListMapNames has them
-    std::optional<Model> against;         ///< of the map displacement: the mesh it leads to
-    std::optional<Model> rest;            ///< of the map tension: the mesh before it was posed
-    std::optional<EdgeField> field;       ///< of the map field
-    NoiseOptions noise;                   ///< of the map noise
-    std::optional<ColourRamp> noiseRamp;  ///< noise as colours
-    int bands = 4;                        ///< of the map bands: how many, the smooth base included
-    bool isVector = false;                ///< displacement and bands as vectors
+    std::vector<std::string> maps;             ///< names, as ListMapNames has them
+    std::optional<Model> against;              ///< of the map displacement: the mesh it leads to
+    std::optional<Model> rest;                 ///< of the map tension: the mesh before it was posed
+    std::optional<std::vector<double>> field;  ///< of the map field: a 1-form on the mesh's edges
+    NoiseOptions noise;                        ///< of the map noise
+    std::optional<ColourRamp> noiseRamp;       ///< noise as colours
+    int bands = 4;          ///< of the map bands: how many, the smooth base included
+    bool isVector = false;  ///< displacement and bands as vectors
     VectorSpace space = VectorSpace::Object;
     bool isNormalized = false;  ///< noise from 0 to 1, a field of length 1
     std::optional<Encoding> encoding;

@@ -92,6 +92,37 @@ TEST(Bake, FilesDoNotDependOnThreads) {
     for (size_t i = 0; i < 4; ++i) EXPECT_EQ(sums[i], sums[i + 4]);
 }
 
+// Meshes from arrays have no file that could tell one from another.
+TEST(Bake, SkipsNoFileOfOtherArrays) {
+    test::TemporaryFolder const folder;
+    auto const model = engine::Model::Build(test::MakeTorus(8, 6));
+    std::vector<double> moved = model.GetPositions();
+    moved[0] += 0.1;
+    auto const other = model.WithPoints(moved);
+    auto options =
+        MakeOptions(folder / "{map}.exr", {"mean", "displacement", "tension", "field"}, 16);
+    options.skipsExisting = true;
+    options.against = options.rest = model;
+    options.field.emplace(static_cast<size_t>(model.GetLevel().GetNumEdges()), 1.0);
+    auto const listBaked = [&](engine::Model const& of) {
+        engine::Job job;
+        std::string baked;
+        for (auto const& output : engine::Bake(of, options, job).outputs)
+            baked += output.wasSkipped ? "" : output.map + " ";
+        return baked;
+    };
+    EXPECT_EQ(listBaked(model), "mean displacement tension field ");
+    EXPECT_EQ(listBaked(model), "");
+    EXPECT_EQ(listBaked(other), "mean displacement tension field ");
+    options.rest = other;
+    EXPECT_EQ(listBaked(other), "tension ");
+    options.field->at(0) = 2.0;
+    EXPECT_EQ(listBaked(other), "field ");
+    options.against = other;
+    EXPECT_NE(listBaked(other).find("displacement "), std::string::npos);
+    EXPECT_EQ(listBaked(other), "");
+}
+
 // Every three of eight vertices make a face: six faces on each edge, more faces than edges at each
 // vertex.
 TEST(Bake, TakesManyFacesOnAnEdge) {

@@ -195,7 +195,7 @@ TEST_F(Layout, OptionTextTellsTheOptionsOfItsMapsOnly) {
          [](BakeOptions& o) { o.noiseRamp = engine::ColourRamp::Parse("#000000,#ff0000"); }},
         {"field", [](BakeOptions& o) { o.isNormalized = true; }},
         {"field", [](BakeOptions& o) { o.space = engine::VectorSpace::UV; }},
-        {"field", [](BakeOptions& o) { o.field->sha256 = "another"; }}};
+        {"field", [](BakeOptions& o) { o.field->at(0) += 1.0; }}};
     std::map<std::string, std::set<std::string>> texts;
     std::map<std::string, size_t> numChanges;
     for (auto const& [map, act] : changes) {
@@ -224,9 +224,10 @@ TEST_F(Layout, AttributesTellInputMapsOptionsUnitsAndVersion) {
     BakeOptions own;
     own.maps = {"mean", "stretch"};
     auto const file = engine::LayOutFiles(engine::MakeMaps(own, torus), "a.exr", false).at(0);
-    auto const plain = AsMap(engine::MakeAttributes(own, file, torus));
+    auto const plain = AsMap(engine::MakeAttributes(own, file, torus, 1012));
     EXPECT_EQ(plain.at("limn:input"), "checksum");
     EXPECT_EQ(plain.at("limn:map"), "mean+stretch");
+    EXPECT_EQ(plain.at("limn:tile"), "1012");
     EXPECT_EQ(plain.at("limn:options"), engine::MakeOptionText(own, file, torus));
     EXPECT_EQ(plain.at("limn:version"), kVersionAndBuild);
     EXPECT_EQ(plain.at("limn:units"),
@@ -236,7 +237,7 @@ TEST_F(Layout, AttributesTellInputMapsOptionsUnitsAndVersion) {
     own.against = torus.WithPoints(torus.GetPositions(), "of the other mesh");
     own.encoding = engine::Encoding{0.5, 0.25};
     own.hasMips = true;
-    auto const rich = AsMap(engine::MakeAttributes(own, file, torus));
+    auto const rich = AsMap(engine::MakeAttributes(own, file, torus, 1012));
     EXPECT_EQ(rich.at("limn:against"), "of the other mesh");
     EXPECT_EQ(rich.at("limn:scale"), "0.5");
     EXPECT_EQ(rich.at("limn:offset"), "0.25");
@@ -254,42 +255,42 @@ std::string WriteExr(test::TemporaryFolder const& folder, engine::Attributes con
     std::vector<float> const plane(64 * 64, 0.5f);
     float const* const tile = plane.data();
     writer.Write(writer.Pack(0, 0, 0, &tile, 64));
-    writer.Commit();
+    writer.Seal({0.25f, 0.5f})->Commit();
     return path;
 }
 
-TEST(IsUpToDate, IsAFileOfTheSameAttributesInAnyOrder) {
+TEST(FindUpToDate, IsAFileOfTheSameAttributesInAnyOrder) {
     test::TemporaryFolder const folder;
     engine::Attributes attributes{{"limn:map", "mean"}, {"limn:input", "a"}, {"software", "any"}};
     std::string const path = WriteExr(folder, attributes);
-    EXPECT_TRUE(engine::IsUpToDate(path, attributes));
+    EXPECT_EQ(engine::FindUpToDate(path, attributes), (engine::ValueRange{0.25f, 0.5f}));
     std::reverse(attributes.begin(), attributes.end());
-    EXPECT_TRUE(engine::IsUpToDate(path, attributes));
+    EXPECT_TRUE(engine::FindUpToDate(path, attributes));
     attributes[0].second = "of other programs' attributes nothing depends";
-    EXPECT_TRUE(engine::IsUpToDate(path, attributes));
+    EXPECT_TRUE(engine::FindUpToDate(path, attributes));
 }
 
-TEST(IsUpToDate, NoFileWithAnotherAttributeOneMoreOrOneLess) {
+TEST(FindUpToDate, NoFileWithAnotherAttributeOneMoreOrOneLess) {
     test::TemporaryFolder const folder;
     engine::Attributes const attributes{{"limn:map", "mean"}, {"limn:input", "a"}};
     std::string const path = WriteExr(folder, attributes);
-    EXPECT_FALSE(engine::IsUpToDate(path, {{"limn:map", "mean"}, {"limn:input", "b"}}));
-    EXPECT_FALSE(engine::IsUpToDate(path, {{"limn:map", "mean"}}));
-    EXPECT_FALSE(engine::IsUpToDate(
+    EXPECT_FALSE(engine::FindUpToDate(path, {{"limn:map", "mean"}, {"limn:input", "b"}}));
+    EXPECT_FALSE(engine::FindUpToDate(path, {{"limn:map", "mean"}}));
+    EXPECT_FALSE(engine::FindUpToDate(
         path, {{"limn:map", "mean"}, {"limn:input", "a"}, {"limn:against", "c"}}));
-    EXPECT_FALSE(engine::IsUpToDate(path, {}));
+    EXPECT_FALSE(engine::FindUpToDate(path, {}));
 }
 
-TEST(IsUpToDate, NoFileThatIsMissingCutShortOrNoImage) {
+TEST(FindUpToDate, NoFileThatIsMissingCutShortOrNoImage) {
     test::TemporaryFolder const folder;
     engine::Attributes const attributes{{"limn:map", "mean"}};
     std::string const path = WriteExr(folder, attributes), whole = test::ReadText(path);
-    EXPECT_FALSE(engine::IsUpToDate(folder / "none.exr", attributes));
+    EXPECT_FALSE(engine::FindUpToDate(folder / "none.exr", attributes));
     for (size_t size : {whole.size() - 1, whole.size() / 2, size_t{10}, size_t{0}})
-        EXPECT_FALSE(engine::IsUpToDate(folder.Write("b.exr", whole.substr(0, size)), attributes))
+        EXPECT_FALSE(engine::FindUpToDate(folder.Write("b.exr", whole.substr(0, size)), attributes))
             << size;
-    EXPECT_FALSE(engine::IsUpToDate(folder.Write("c.exr", "no image"), attributes));
-    EXPECT_TRUE(engine::IsUpToDate(folder.Write("d.exr", whole), attributes));
+    EXPECT_FALSE(engine::FindUpToDate(folder.Write("c.exr", "no image"), attributes));
+    EXPECT_TRUE(engine::FindUpToDate(folder.Write("d.exr", whole), attributes));
 }
 
 }  // namespace

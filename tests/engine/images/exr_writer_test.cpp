@@ -91,7 +91,7 @@ TEST_P(ExrWriterAs, ReadsBackThroughOpenExr) {
         ExrWriter writer(path, spec);
         EXPECT_FALSE(std::filesystem::exists(path));  // not before it is complete
         for (int level = 0; level < spec.GetNumLevels(); ++level) WriteLevel(writer, spec, level);
-        writer.Commit();
+        writer.Seal({-0.5f, 2.0f})->Commit();
     }
     Imf::TiledInputFile input(path.c_str());
     EXPECT_EQ(input.numLevels(), spec.GetNumLevels());
@@ -109,8 +109,10 @@ TEST_P(ExrWriterAs, ReadsBackThroughOpenExr) {
         }
     }
     auto const attributes = ReadExrAttributes(path, "limn:");
-    ASSERT_EQ(attributes.size(), 1u);
-    EXPECT_EQ(attributes[0].second, "test");
+    ASSERT_EQ(attributes.size(), 2u);
+    EXPECT_EQ(attributes[0], std::pair(std::string("limn:map"), std::string("test")));
+    EXPECT_EQ(attributes[1].first, "limn:sha256");
+    EXPECT_EQ(CheckSeal(path), (ValueRange{-0.5f, 2.0f}));
 }
 
 TEST(ExrWriter, LeavesNothingWhenItIsAbandoned) {

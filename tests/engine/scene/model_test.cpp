@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/scene/content_hash.h"
 #include "support/errors.h"
 #include "support/files.h"
 #include "support/meshes.h"
@@ -42,7 +43,6 @@ TEST(Model, MakesTheSceneItWasBuiltFrom) {
     scene.groups[0] = {{"skin"}, std::vector<Index>(scene.cage.faceSizes.size(), 0)};
     Scene const back = Model::Build(scene).MakeScene();
     EXPECT_EQ(back.path, scene.path);
-    EXPECT_EQ(back.sha256, scene.sha256);
     EXPECT_EQ(back.positions, scene.positions);
     EXPECT_EQ(back.uvs, scene.uvs);
     EXPECT_EQ(back.primvars.at(0).values, scene.primvars[0].values);
@@ -75,9 +75,26 @@ TEST(Model, NeverShowsPositionsItNoLongerHas) {
     auto const before = model.GetPositions();
     Model const other = model.WithPoints(std::vector<double>(before.size(), 0.5));
     EXPECT_EQ(other.MakeScene().positions, other.GetPositions());
-    EXPECT_NE(other.MakeScene().sha256, model.GetSha256());
+    EXPECT_NE(other.GetSha256(), model.GetSha256());
     EXPECT_EQ(model.GetPositions(), before);
     EXPECT_EQ(model.MakeScene().positions, before);
+}
+
+TEST(Model, FromArraysHasTheChecksumOfItsContent) {
+    Scene scene = MakeNamedTorus();
+    scene.sha256.clear();
+    std::string const sha256 = Model::Build(scene).GetSha256();
+    EXPECT_EQ(sha256, engine::HashContent(scene, scene.positions));
+    EXPECT_EQ(Model::Build(scene).GetSha256(), sha256);
+    scene.positions[0] += 1.0;
+    EXPECT_NE(Model::Build(scene).GetSha256(), sha256);
+}
+
+TEST(Model, OfAChangedSceneIsNotTakenForItsFile) {
+    Model const model = Model::Build(MakeNamedTorus());
+    Scene scene = model.MakeScene();
+    scene.positions[0] += 1.0;
+    EXPECT_NE(Model::Build(scene).GetSha256(), model.GetSha256());
 }
 
 TEST(Model, OutlivesTheOneItSharesWith) {

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Whatever a verb is at, a signal ends it within a second of processor time: while it reads, builds
+// tables, factorises, iterates, measures or writes.
+
+#include <chrono>
+#include <thread>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "engine/io/mesh_writer.h"
+#include "support/cli.h"
+
+namespace limn {
+namespace {
+
+using namespace test::cli;
+
+/// A torus of 90 000 faces with texture coordinates, and places on it.
+struct Inputs {
+    test::TemporaryFolder folder;
+    std::string mesh = folder / "torus.obj", places;
+
+    Inputs() {
+        engine::WriteMesh(mesh, test::MakeTorus(300, 300), Precision::Float);
+        std::string rows = "face,s,t\n";
+        for (int face = 0; face < 90000; ++face) rows += fmt::format("{},0.3,0.7\n", face);
+        places = folder.Write("places.csv", rows);
+    }
+};
+
+Inputs const& GetInputs() {
+    static Inputs const inputs;
+    return inputs;
+}
+
+/// A run of several seconds. OUT and MESH stand for paths.
+struct Run {
+    char const* name;
+    Words words;
+};
+
+std::vector<Run> const kRuns{
+    {"Info", {"info", "MESH", "--json"}},
+    {"Eval", {"eval", "MESH", "--at", "PLACES", "-o", "OUT.csv", "--precision", "double"}},
+    {"Measure", {"measure", "MESH", "-o", "OUT", "--picture"}},
+    {"Bake", {"bake", "MESH", "-o", "OUT.exr", "--maps", "mean,stretch,noise", "--size", "8192"}},
+    {"Refine", {"refine", "MESH", "-o", "OUT.obj", "--levels", "3"}},
+    {"RefineDifferential",
+     {"refine", "MESH", "-o", "OUT.obj", "--levels", "2", "--space", "differential"}},
+    {"RefineCholesky",
+     {"refine", "MESH", "-o", "OUT.obj", "--space", "differential", "--solver", "cholesky"}},
+    {"Fit", {"fit", "MESH", "-o", "OUT.obj", "--method", "progressive", "--tolerance", "1e-12"}},
+    {"FitDirect", {"fit", "MESH", "-o", "OUT.obj", "--method", "direct"}},
+    {"Bands", {"bands", "MESH", "-o", "OUT", "--count", "20"}},
+    {"Denoise", {"denoise", "MESH", "-o", "OUT.obj", "--steps", "200"}},
+    {"Sharpen", {"sharpen", "MESH", "-o", "OUT.obj", "--steps", "200"}},
+    {"Morph", {"morph", "MESH", "MESH", "-o", "OUT", "--steps", "50"}},
+    {"Smooth", {"smooth", "MESH", "-o", "OUT.obj", "--levels", "2"}},
+    {"Field",
+     {"field", "MESH", "-o", "OUT.obj", "--source", "0", "--sink", "1000", "--levels", "2",
+      "--harmonic", "1,0"}}};
+
+class Interrupted : public testing::TestWithParam<Run> {};
+
+INSTANTIATE_TEST_SUITE_P(Verbs, Interrupted, testing::ValuesIn(kRuns),
+                         [](auto const& instance) { return std::string(instance.param.name); });
+
+TEST_P(Interrupted, EndsWithinASecondOfProcessorTimeAndLeavesNothing) {
+    Inputs const& inputs = GetInputs();
+    test::TemporaryFolder const folder;
+    Words words{LIMN_PROGRAM};
+    for (std::string word : GetParam().words) {
+        if (word == "MESH") word = inputs.mesh;
+        if (word == "PLACES") word = inputs.places;
+        if (word.starts_with("OUT")) word = folder / word;
+        words.push_back(word);
+    }
+    for (double const moment : {0.05, 0.6}) {
+        test::Process process(words);
+        while (process.GetProcessorTime() < moment && !process.HasEnded())
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        double const before = process.GetProcessorTime();
+        process.Send(SIGINT);
+        Outcome const outcome = process.Wait();
+        EXPECT_LT(outcome.processorSeconds - before, 1.0) << "at " << moment;
+        if (outcome.status == 0) break;  // it was nearly done
+        ExpectError(outcome, 130, "interrupted");
+        EXPECT_TRUE(folder.List().empty());
+    }
+}
+
+}  // namespace
+}  // namespace limn
