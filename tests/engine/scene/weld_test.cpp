@@ -483,7 +483,6 @@ TEST(Weld, WhateverIsWeldedIsSoundAndHasNoNewEdgeOfThreeFaces) {
         EXPECT_NO_THROW(engine::Model::Build(welded));
         EXPECT_EQ(welded.cage.numVertices, soup.cage.numVertices - welded.weld->numJoined);
         EXPECT_EQ(AtCorners(welded, welded.positions, 3), AtCorners(soup, soup.positions, 3));
-        EXPECT_EQ(engine::Weld(welded, 0.0).cage.faceVertices, welded.cage.faceVertices);
         auto const before = ListSides(soup), after = ListSides(welded);
         std::map<std::pair<Index, Index>, int> countBefore, countAfter, largestBefore;
         for (auto const& side : before) ++countBefore[side];
