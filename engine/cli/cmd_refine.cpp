@@ -24,13 +24,14 @@ namespace {
 using far_ext::SubdivisionRule;
 
 /// Options that only meshes in differential space have.
-std::vector<char const*> const kDifferentialOptions{"--laplacian",  "--dirmag", "--spatial-first",
-                                                    "--handle",     "--solver", "--edit",
-                                                    "--keep-result"};
+std::vector<char const*> const kDifferentialOptions{
+    "--laplacian", "--dirmag", "--spatial-first", "--handle",
+    "--solver",    "--edit",   "--tolerance",     "--keep-result"};
 
 struct RefineArguments {
     std::string mesh, output, editPath;
     std::optional<NamedRule> rule;
+    std::optional<double> tolerance;
     int levels = 1;
     bool isDifferential = false, toLimit = false, keepsResult = false, isCurve = false;
     engine::DifferentialOptions options;
@@ -51,21 +52,45 @@ SubdivisionRule GetRule(RefineArguments const& a) {
     return a.rule ? a.rule->rule : SubdivisionRule::Scheme;
 }
 
+bool IsFit(engine::DifferentialOptions const& options) {
+    return options.laplacian != engine::Laplacian::Combinatorial;
+}
+
+/// The tolerance that decides.
+double& GetTolerance(engine::DifferentialOptions& options) {
+    return IsFit(options) ? options.fitTolerance : options.tolerance;
+}
+
 engine::DifferentialOptions MakeOptions(RefineArguments const& a, CommonOptions const& common) {
     engine::DifferentialOptions options = a.options;
     options.levels = a.levels;
     options.rule = GetRule(a);
     // What is written should be right to its last digits.
     options.tolerance = common.precision == Precision::Double ? 1e-12 : 1e-8;
+    if (a.tolerance) GetTolerance(options) = *a.tolerance;
     options.orientation = common.orientation;
     if (!a.editPath.empty()) options.edit = engine::ReadCurvatureEdit(a.editPath);
     return options;
 }
 
+/// Why the tolerance was missed.
+std::string Explain(engine::DifferentialReport const& found, bool isFit, double tolerance) {
+    if (!isFit) {
+        return fmt::format(
+            "the solver stopped at residual {:.1e} after {} iterations; the tolerance is {:.1e}",
+            found.residual, found.iterations, tolerance);
+    }
+    return fmt::format(
+        "{:.2g} of the differential coordinates remains unmet after {} steps{}; --tolerance is "
+        "{:.2g}",
+        found.residual, found.fitSteps, found.hasFitStalled ? ", and more would gain little" : "",
+        tolerance);
+}
+
 engine::DifferentialResult RefineDifferentially(RefineArguments const& a,
                                                 engine::Model const& model, Context& context) {
-    auto result =
-        engine::RefineDifferentially(model, MakeOptions(a, context.GetCommon()), context.GetJob());
+    auto options = MakeOptions(a, context.GetCommon());
+    auto result = engine::RefineDifferentially(model, options, context.GetJob());
     engine::DifferentialReport const& found = result.report;
     auto const report = context.GetReport();
     report["unknowns"] = found.unknowns;
@@ -73,15 +98,19 @@ engine::DifferentialResult RefineDifferentially(RefineArguments const& a,
     report["solve_seconds"] = found.solveSeconds;
     report["residual"] = found.residual;
     report["compatibility_defect"] = found.compatibilityDefect;
+    report["residual_rounding"] = found.rounding;
     report["converged"] = found.converged;
+    if (IsFit(options)) {
+        report["fit_steps"] = found.fitSteps;
+        report["fit_stalled"] = found.hasFitStalled;
+    }
     report["tangential_share"] = found.tangentialShare;
     report["size_ratio"] = found.sizeRatio;
     report["thin_plate_energy"] = found.energy.mean;
     report["thin_plate_energy_area"] = found.energy.integral;
     if (!found.converged) {
-        context.GetJob().Warn(fmt::format(
-            "the solver stopped at residual {:.1e} after {} iterations{}", found.residual,
-            found.iterations, a.keepsResult ? "" : "; nothing is written without --keep-result"));
+        context.GetJob().Warn(Explain(found, IsFit(options), GetTolerance(options)) +
+                              (a.keepsResult ? "" : "; nothing is written without --keep-result"));
     }
     return result;
 }
@@ -175,8 +204,17 @@ Verb AddRefine(CLI::App& app) {
                          "vertex that stays: one per component or boundary loop (repeatable)"));
     differential(AddWordOption(*verb, "--solver", a->options.solver, kDifferentialSolverWords,
                                "multigrid (default) or cholesky"));
+    differential(verb->add_option(
+        "--edit", a->editPath,
+        "JSON, all keys optional, vertices 0-based: {\"curvature\": [{\"vertex\": 3, "
+        "\"factor\": 1.5}], \"rotate\": [{\"vertex\": 7, \"axis\": [0,0,1], "
+        "\"degrees\": 20}], \"filter\": \"polarise\"}"));
     differential(
-        verb->add_option("--edit", a->editPath, "JSON: curvature factors, rotations, filter"));
+        verb->add_option(
+            "--tolerance", a->tolerance,
+            "of what remains of the differential coordinates, over their length (default "
+            "1e-8, with --precision double 1e-12; with --laplacian cotangent or mesh 0.01)"))
+        ->check(CLI::Range(1e-15, 1.0));
     differential(verb->add_flag("--keep-result", a->keepsResult,
                                 "write what a solver that missed its tolerance has"));
     verb->footer(

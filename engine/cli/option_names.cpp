@@ -25,6 +25,7 @@ constexpr OptionName kOptionNames[] = {
     {"harmonics", "--harmonic"},
     {"isBalanced", "--balance"},
     {"isVector", "--vector"},
+    {"laplacian", "--laplacian"},
     {"levels", "--levels"},
     {"maps", "--maps"},
     {"noiseRamp", "--noise-ramp"},

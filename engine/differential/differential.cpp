@@ -91,15 +91,10 @@ public:
     DifferentialResult Run();
 
 private:
+    void CheckSize() const;
     Level GetStart() const { return _refiner->GetLevel(_options.spatialLevels); }
     Level GetLast() const { return _refiner->GetLevel(_refiner->GetMaxLevel()); }
 
-    far_ext::AreaLaplacian BuildAreaLaplacian(Level const& level,
-                                              std::span<double const> positions) const {
-        return _options.laplacian == Laplacian::Mesh
-                   ? far_ext::BuildHeatLaplacian(level, positions)
-                   : far_ext::BuildCotangentLaplacian(level, positions);
-    }
     Rows FindAreaDeltas(Rows const& positions) const;
     Rows FindPositions();
     Rows Subdivide(Rows deltas);
@@ -115,9 +110,10 @@ private:
 };
 
 Rows DifferentialRefinement::FindAreaDeltas(Rows const& positions) const {
-    auto const laplacian = BuildAreaLaplacian(GetStart(), positions);
-    Rows deltas(positions.size());
-    laplacian.rows.Apply(positions.data(), deltas.data(), 3);
+    auto const laplacian = _options.laplacian == Laplacian::Mesh
+                               ? far_ext::BuildHeatLaplacian(GetStart(), positions)
+                               : far_ext::BuildCotangentLaplacian(GetStart(), positions);
+    Rows deltas = far_ext::FindDeltas(laplacian.rows, positions);
     for (size_t i = 0; i < deltas.size(); ++i) deltas[i] /= laplacian.areas[i / 3];
     ExtendToBoundary(GetStart(), deltas);
     return deltas;
@@ -146,15 +142,17 @@ Rows DifferentialRefinement::Subdivide(Rows deltas) {
 
 void DifferentialRefinement::FitAreas(eval::Reconstructor& reconstructor, Rows const& deltas,
                                       Rows& positions) {
-    auto const build = [&](std::span<double const> p) {
-        _job.CheckStopped();
-        return BuildAreaLaplacian(GetLast(), p);
-    };
-    auto const fit =
-        eval::FitAreaLaplacian(*_refiner, reconstructor.GetMultigrid(), build, deltas, positions);
+    auto const kind = _options.laplacian == Laplacian::Mesh ? eval::AreaLaplacianKind::Heat
+                                                            : eval::AreaLaplacianKind::Cotangent;
+    auto const fit = eval::FitAreaLaplacian(
+        *_refiner, reconstructor.GetMultigrid(), kind, deltas, positions,
+        {.tolerance = _options.fitTolerance, .onWork = [&] { _job.CheckStopped(); }});
     _report.iterations += fit.iterations;
     _report.residual = fit.residual;
+    _report.rounding = 0.0;
     _report.converged = fit.converged;
+    _report.fitSteps = fit.steps;
+    _report.hasFitStalled = fit.hasStalled && !fit.converged;
 }
 
 Rows DifferentialRefinement::FindPositions() {
@@ -164,10 +162,8 @@ Rows DifferentialRefinement::FindPositions() {
         _spatial = eval::SubdivideValues<3>(*_refiner, level, _options.rule, _spatial);
         if (level == _options.spatialLevels) _start = _spatial;
     }
-    auto const combinatorial = far_ext::BuildCombinatorialLaplacian(GetStart());
-    Rows deltas(_start.size());
-    combinatorial.Apply(_start.data(), deltas.data(), 3);
-    deltas = Subdivide(std::move(deltas));
+    Rows deltas =
+        Subdivide(far_ext::FindDeltas(far_ext::BuildCombinatorialLaplacian(GetStart()), _start));
     double const scale = std::pow(0.25, _refiner->GetMaxLevel() - _options.spatialLevels);
     for (double& delta : deltas) delta *= scale;
     Rows areaDeltas;
@@ -184,6 +180,7 @@ Rows DifferentialRefinement::FindPositions() {
     _report.unknowns = reconstructor.GetMultigrid().GetLevels().back().numUnknowns;
     _report.iterations = solve.iterations;
     _report.residual = solve.residual;
+    _report.rounding = solve.rounding;
     _report.compatibilityDefect = solve.compatibilityDefect;
     _report.converged = solve.converged;
     if (!areaDeltas.empty()) FitAreas(reconstructor, areaDeltas, positions);
@@ -197,7 +194,20 @@ Rows DifferentialRefinement::FindPositions() {
     return positions;
 }
 
+/// The mesh Laplace operator joins each vertex to some 200 others.
+void DifferentialRefinement::CheckSize() const {
+    constexpr Index kMost = 20000;
+    Index const numVertices = GetLast().GetNumVertices();
+    if (_options.laplacian != Laplacian::Mesh || numVertices <= kMost) return;
+    throw Error(
+        ErrorCode::TooLarge,
+        fmt::format("`laplacian` mesh: the result has {} vertices, and for more than {} this "
+                    "Laplacian takes many minutes; use cotangent",
+                    numVertices, kMost));
+}
+
 DifferentialResult DifferentialRefinement::Run() {
+    CheckSize();
     Scene fine = RefineAllButPositions(_model, *_refiner, _job);
     fine.positions = FindPositions();
     return {std::move(fine), _report};

@@ -43,7 +43,8 @@ struct DifferentialOptions {
     int spatialLevels = 0;  ///< levels done in space before
     std::vector<Index> handles;
     DifferentialSolver solver = DifferentialSolver::Multigrid;
-    double tolerance = 1e-8;
+    double tolerance = 1e-8;     ///< of the linear solve's residual
+    double fitTolerance = 0.01;  ///< of the residual with a Laplacian that knows areas
     CurvatureEdit edit;
     Orientation orientation = Orientation::Right;
 };
@@ -52,8 +53,12 @@ struct DifferentialReport {
     Index unknowns = 0;
     int iterations = 0;
     double solveSeconds = 0.0;  ///< set-up of the solver included
-    double residual = 0.0, compatibilityDefect = 0.0;
+    double residual = 0.0;      ///< of the positions handed back
+    double rounding = 0.0;      ///< what of it the positions' being doubles may account for
+    double compatibilityDefect = 0.0;
     bool converged = false;
+    int fitSteps = 0;              ///< of the fit to a Laplacian that knows areas
+    bool hasFitStalled = false;    ///< it ended short of the tolerance, since steps gained little
     double tangentialShare = 0.0;  ///< of the differential coordinates; see eval::DirMag
     double sizeRatio =
         1.0;  ///< rms distance from the mean vertex, over that of the spatial refinement
@@ -75,7 +80,7 @@ struct DifferentialResult {
 /// \throws Error  as RefineUniformly; BadOption: contradicting levels or handles.  BadMesh:
 ///                boundaries that meet in a vertex, an edit of a vertex that is not there, with
 ///                cotangents a triangle without area. Unsupported: a Laplacian or rule that needs
-///                triangles
+///                triangles.  TooLarge: more than 20000 vertices with the mesh Laplace operator
 /// \throws Stopped
 /// Source  [Zhu11]
 DifferentialResult RefineDifferentially(Model const& model, DifferentialOptions const& options,

@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
 
-#include <Eigen/Dense>
-
+#include "eval/differential/laplacian_derivative.h"
+#include "eval/parallel/rows.h"
 #include "far_ext/error.h"
+#include "far_ext/rows/breadth_first.h"
 #include "far_ext/rows/points.h"
 
 namespace limn::eval {
@@ -56,185 +60,263 @@ std::vector<EdgeWeights> FindWeights(Far::TopologyRefiner const& refiner,
     return weights;
 }
 
-/// Where Delta is missed: Delta - A^-1 L V, 0 at fixed vertices.
+/// Where Delta is missed, per row: root (Delta - h) for h = M L V and the root of its weight.
 struct Misfit {
-    std::vector<double> values, areas;  ///< 3 and 1 per vertex
-    double squares = 0.0,
-           scale = 0.0;  ///< area-weighted sums of squares: of the misfit, and of Delta
+    far_ext::AreaLaplacian laplacian;
+    far_ext::HeatKernel kernel;
+    std::vector<double> areas;     // per vertex
+    LaneRows values;               // 0 at fixed vertices
+    std::vector<double> byImages;  // per unknown: derivative of values by L V
+    LaneRows byAreas;              // derivative of values by the vertex' area
+    double squares = std::numeric_limits<double>::infinity();  // sum of values squared
 };
 
-/// The least-squares problem and its linearisation. Norms are weighted by area: they mean the same
-/// on every mesh of the surface, and thin triangles do not rule [Differential 6].
+double SumSquares(LaneRows const& rows) {
+    return SumRows(static_cast<Index>(rows.size()),
+                   [&](Index row) -> DoubleLanes { return rows[row].square(); })
+        .sum();
+}
+
+/// The least-squares problem, linearised where it stands.
 class AreaFit {
 public:
-    AreaFit(Far::TopologyRefiner const& refiner, Multigrid& multigrid,
-            LaplacianBuilder const& build, std::span<double const> deltas)
+    AreaFit(Far::TopologyRefiner const& refiner, Multigrid& multigrid, AreaLaplacianKind kind,
+            std::span<double const> deltas, std::span<double const> start,
+            AreaFitOptions const& options)
         : _refiner(refiner),
+          _level(refiner.GetLevel(refiner.GetMaxLevel())),
           _multigrid(multigrid),
-          _finest(multigrid.GetLevels().back()),
-          _build(build),
-          _deltas(deltas) {}
-
-    Misfit Measure(std::span<double const> positions) const {
-        auto const laplacian = _build(positions);
-        Misfit misfit{std::vector<double>(positions.size()), laplacian.areas};
-        laplacian.rows.Apply(positions.data(), misfit.values.data(), 3);
-        far_ext::Points const deltas(_deltas);
-        far_ext::MutablePoints const values(misfit.values);
-        for (Index row = 0; row < _finest.GetNumRows(); ++row) {
-            Index const vertex = _finest.vertices[row];
-            double const area = laplacian.areas[vertex];
-            bool const isUnknown = row < _finest.numUnknowns;
-            for (Index c = 0; c < 3; ++c) {
-                double const delta = deltas[vertex][c];
-                double& value = values[vertex][c];
-                value = isUnknown ? delta - value / area : 0.0;
-                misfit.squares += area * value * value;
-                if (isUnknown) misfit.scale += area * delta * delta;
-            }
+          _graph(multigrid.GetLevels().back()),
+          _rowsOf(far_ext::InvertOrder(_graph.vertices)),
+          _kind(kind),
+          _deltas(deltas),
+          _options(options) {
+        auto const areas = far_ext::FindVertexAreas(_level, start);
+        for (Index row = 0; row < _graph.numUnknowns; ++row) {
+            Index const vertex = _graph.vertices[row];
+            _roots.push_back(std::sqrt(areas[vertex]));
+            _scale += areas[vertex] * Eigen::Vector3d(_deltas[vertex]).squaredNorm();
         }
-        return misfit;
+        for (auto* rows : {&_preconditioned, &_moved, &_changed, &_factors, &_gradient})
+            rows->assign(_graph.GetNumRows(), DoubleLanes::Zero());
     }
 
-    /// The misfit of moved positions; its squares are not a number where they have no Laplacian.
-    Misfit TryMove(std::span<double const> positions, std::vector<double> const& step, double share,
-                   std::vector<double>& moved) const {
-        moved.assign(positions.begin(), positions.end());
-        for (size_t i = 0; i < moved.size(); ++i) moved[i] += share * step[i];
-        try {
-            return Measure(moved);
-        } catch (Error const&) {  // a triangle collapsed on the way
-            Misfit none;
-            none.squares = std::nan("");
-            return none;
-        }
+    Misfit Measure(std::span<double const> positions) const;
+    double FindRelativeSize(Misfit const& misfit) const {
+        return _scale > 0.0 ? std::sqrt(misfit.squares / _scale) : 0.0;
     }
 
-    std::vector<double> FindStep(std::span<double const> positions, Misfit const& misfit);
+    /// The misfit of moved positions; infinite where they have no Laplacian.
+    Misfit TryMove(std::span<double const> positions, LaneRows const& step,
+                   std::vector<double>& moved) const;
+
+    void Linearise(std::span<double const> positions, Misfit const& misfit);
+
+    struct Step {
+        LaneRows move;
+        double squares;  // of the misfit after it, were the problem linear
+    };
+    Step FindStep(double damping);
 
     int GetNumIterations() const { return _numIterations; }
 
 private:
-    double Product(std::vector<double> const& a, std::vector<double> const& b,
-                   Misfit const& misfit) const {
-        double sum = 0.0;
-        for (size_t i = 0; i < a.size(); ++i) sum += misfit.areas[i / 3] * a[i] * b[i];
-        return sum;
-    }
+    void Apply(LaneRows const& coefficients, LaneRows& change);
+    void ApplyTransposed(LaneRows const& misfit, LaneRows& coefficients);
 
     Far::TopologyRefiner const& _refiner;
+    Far::TopologyLevel _level;
     Multigrid& _multigrid;
-    MultigridLevel const& _finest;
-    LaplacianBuilder const& _build;
-    std::span<double const> _deltas;
+    MultigridLevel const& _graph;
+    far_ext::LargeArray<Index> _rowsOf;  // per vertex
+    AreaLaplacianKind _kind;
+    far_ext::Points _deltas;
+    AreaFitOptions const& _options;
+    std::vector<double> _roots;  // per unknown: of the area it started with
+    double _scale = 0.0;         // sum of squares of roots * Delta
     int _numIterations = 0;
+
+    // Of the linearisation.
+    Misfit const* _misfit = nullptr;
+    std::unique_ptr<LaplacianDerivative> _derivative;
+    std::vector<double> _balance;  // per unknown: makes the derivative's diagonal about -1
+    LaneRows _preconditioned, _moved, _changed, _factors, _gradient;  // work; 0 at fixed rows
 };
 
-double FindLargest(std::span<double const> values) {
-    double largest = 0.0;
-    for (double value : values) largest = std::max(largest, std::abs(value));
-    return largest;
+Misfit AreaFit::Measure(std::span<double const> positions) const {
+    bool const isHeat = _kind == AreaLaplacianKind::Heat;
+    Misfit misfit;
+    misfit.laplacian = isHeat ? far_ext::BuildHeatLaplacian(_level, positions, &misfit.kernel)
+                              : far_ext::BuildCotangentLaplacian(_level, positions);
+    auto const images = far_ext::FindDeltas(misfit.laplacian.rows, positions);
+    misfit.areas = isHeat ? far_ext::FindVertexAreas(_level, positions) : misfit.laplacian.areas;
+    misfit.values.assign(_graph.GetNumRows(), DoubleLanes::Zero());
+    misfit.byAreas = misfit.values;
+    misfit.byImages.resize(_graph.numUnknowns);
+    ForEachRow(_graph.numUnknowns, [&](Index row) {
+        Index const vertex = _graph.vertices[row];
+        double const root = _roots[row], scale = misfit.laplacian.areas[vertex];
+        Eigen::Vector3d const found = far_ext::Points(images)[vertex] / scale;
+        misfit.values[row] << (root * (_deltas[vertex] - found)).array(), 0.0;
+        misfit.byImages[row] = -root / scale;
+        if (!isHeat) misfit.byAreas[row] << (root / scale * found).array(), 0.0;
+    });
+    misfit.squares = SumSquares(misfit.values);
+    return misfit;
 }
 
-/// The greatest extent along an axis.
-double FindExtent(std::span<double const> positions) {
-    double extent = 0.0;
-    for (size_t c = 0; c < 3; ++c) {
-        double low = positions[c], high = positions[c];
-        for (size_t i = c; i < positions.size(); i += 3) {
-            low = std::min(low, positions[i]);
-            high = std::max(high, positions[i]);
-        }
-        extent = std::max(extent, high - low);
+Misfit AreaFit::TryMove(std::span<double const> positions, LaneRows const& step,
+                        std::vector<double>& moved) const {
+    moved.assign(positions.begin(), positions.end());
+    far_ext::MutablePoints const points(moved);
+    for (Index row = 0; row < _graph.numUnknowns; ++row)
+        points[_graph.vertices[row]] += step[row].head<3>().matrix();
+    try {
+        return Measure(moved);
+    } catch (Error const&) {  // a triangle collapsed on the way
+        return {};
     }
-    return extent;
 }
 
-void AddTimes(std::vector<double>& to, double factor, std::vector<double> const& values) {
-    for (size_t i = 0; i < to.size(); ++i) to[i] += factor * values[i];
-}
-
-/// The move that minimises |misfit - J move|, J z = (misfit(V) - misfit(V + e z)) / e, over a
-/// Krylov space: flexible GMRES, since the multigrid is not quite the same map twice. J^T is not
-/// needed, as it would be for normal equations [Differential 6].
-std::vector<double> AreaFit::FindStep(std::span<double const> positions, Misfit const& misfit) {
-    constexpr int kMaxDimension = 12;
-    constexpr double kEnough = 0.05;  // of the misfit: farther than linearisation reaches
+/// \param misfit  of these positions; kept by reference
+void AreaFit::Linearise(std::span<double const> positions, Misfit const& misfit) {
+    _misfit = &misfit;
+    _balance.resize(_graph.numUnknowns);
+    ForEachRow(_graph.numUnknowns, [&](Index row) {
+        _balance[row] = misfit.areas[_graph.vertices[row]] / _roots[row];
+    });
     _multigrid.SetWeights(_refiner, FindWeights(_refiner, positions));
-    // Moves are kept beside the basis: the step is made of them, not of what went into them.
-    double const size = std::sqrt(misfit.squares), extent = FindExtent(positions);
-    std::vector<std::vector<double>> basis{misfit.values}, moves;
-    for (double& value : basis[0]) value /= size;
-    Eigen::MatrixXd hessenberg = Eigen::MatrixXd::Zero(kMaxDimension + 1, kMaxDimension);
-    Eigen::VectorXd weights;
-    std::vector<double> moved;
-    for (int k = 0; k < kMaxDimension; ++k) {
-        // The move that the Laplacian of the present angles would answer this misfit with.
-        std::vector<double> rightSide = basis[k], move(positions.size(), 0.0);
-        for (size_t i = 0; i < rightSide.size(); ++i) rightSide[i] *= misfit.areas[i / 3];
-        _numIterations +=
-            _multigrid.Solve(rightSide, move, {.tolerance = 1e-2, .maxIterations = 20}).iterations;
-        // A difference small enough to be a derivative, large enough to be no rounding.
-        double const length = FindLargest(move),
-                     share = length > 0.0 ? 1e-6 * extent / length : 1.0;
-        Misfit const there = TryMove(positions, move, share, moved);
-        if (!std::isfinite(there.squares)) break;
-        std::vector<double> image = misfit.values;
-        AddTimes(image, -1.0, there.values);
-        for (double& value : image) value /= share;
-        for (int j = 0; j <= k; ++j) {
-            hessenberg(j, k) = Product(image, basis[j], misfit);
-            AddTimes(image, -hessenberg(j, k), basis[j]);
-        }
-        hessenberg(k + 1, k) = std::sqrt(Product(image, image, misfit));
-        moves.push_back(std::move(move));
-        Eigen::MatrixXd const part = hessenberg.topLeftCorner(k + 2, k + 1);
-        Eigen::VectorXd const first = Eigen::VectorXd::Unit(k + 2, 0) * size;
-        weights = part.colPivHouseholderQr().solve(first);
-        if ((first - part * weights).norm() < kEnough * size || !(hessenberg(k + 1, k) > 0.0))
-            break;
-        for (double& value : image) value /= hessenberg(k + 1, k);
-        basis.push_back(std::move(image));
+    _derivative =
+        _kind == AreaLaplacianKind::Heat
+            ? DifferentiateHeat(_level, _graph, _rowsOf, positions, misfit.laplacian, misfit.kernel)
+            : DifferentiateCotangents(_level, _graph, _rowsOf, positions);
+}
+
+/// What the move that belongs to coefficients, in _moved, does to the misfit. Its derivative is
+/// about -root G / A, which multigrid and the rest cancel.
+void AreaFit::Apply(LaneRows const& coefficients, LaneRows& change) {
+    if (_options.onWork) _options.onWork();
+    ForEachRow(_graph.numUnknowns,
+               [&](Index row) { _preconditioned[row] = _balance[row] * coefficients[row]; });
+    _multigrid.Precondition(_preconditioned, _moved);
+    _derivative->Apply(_moved, _changed);
+    ForEachRow(_graph.numUnknowns, [&](Index row) {
+        change[row] =
+            _misfit->byImages[row] * _changed[row] + _changed[row][3] * _misfit->byAreas[row];
+        change[row][3] = 0.0;
+    });
+}
+
+void AreaFit::ApplyTransposed(LaneRows const& misfit, LaneRows& coefficients) {
+    ForEachRow(_graph.numUnknowns, [&](Index row) {
+        _factors[row] = _misfit->byImages[row] * misfit[row];
+        _factors[row][3] = (misfit[row] * _misfit->byAreas[row]).sum();
+    });
+    _derivative->ApplyTransposed(_factors, _gradient);
+    _multigrid.Precondition(_gradient, _preconditioned);
+    ForEachRow(_graph.numUnknowns,
+               [&](Index row) { coefficients[row] = _balance[row] * _preconditioned[row]; });
+}
+
+/// The step whose coefficients c minimise |misfit + change(c)|^2 + damping |c|^2, by conjugate
+/// gradients for least squares.
+AreaFit::Step AreaFit::FindStep(double damping) {
+    // The step is as near as linearisation is worth: twice as near costs more than it gains.
+    constexpr int kMaxIterations = 100;
+    constexpr double kEnough = 0.1;  // of the gradient
+    LaneRows zero(_graph.GetNumRows(), DoubleLanes::Zero());
+    LaneRows rest = _misfit->values, coefficients = zero, gradient = zero, change = zero;
+    Step step{zero, 0.0};
+    ApplyTransposed(rest, gradient);
+    LaneRows direction = gradient;
+    double squares = SumSquares(gradient);
+    double const goal = kEnough * kEnough * squares;
+    for (int k = 0; k < kMaxIterations && squares > goal; ++k) {
+        Apply(direction, change);
+        double const share = -squares / (SumSquares(change) + damping * SumSquares(direction));
+        ForEachRow(_graph.numUnknowns, [&](Index row) {
+            coefficients[row] += share * direction[row];
+            step.move[row] += share * _moved[row];
+            rest[row] += share * change[row];
+        });
+        ApplyTransposed(rest, gradient);
+        ForEachRow(_graph.numUnknowns,
+                   [&](Index row) { gradient[row] += damping * coefficients[row]; });
+        double const next = SumSquares(gradient);
+        ForEachRow(_graph.numUnknowns, [&](Index row) {
+            direction[row] = gradient[row] + next / squares * direction[row];
+        });
+        squares = next;
+        ++_numIterations;
     }
-    std::vector<double> step(positions.size(), 0.0);
-    for (size_t k = 0; k < moves.size(); ++k)
-        AddTimes(step, weights[static_cast<Index>(k)], moves[k]);
+    _multigrid.HoldAnchors(step.move);
+    step.squares = SumSquares(rest);
     return step;
+}
+
+/// Nielsen's rule: damping falls where steps do what their linearisation says, and grows, faster
+/// and faster, where they gain nothing at all.
+class Damping {
+public:
+    double Get() const { return _value; }
+    bool IsAtMost() const { return _value > 1e8; }  // moves are nothing there
+
+    /// \param ratio  what a step gained over what it was to gain
+    void Adapt(double ratio) {
+        _value = std::max(1e-8, _value * std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * ratio - 1.0, 3)));
+        _growth = 2.0;
+    }
+
+    void Raise() {
+        _value *= _growth;
+        _growth *= 2.0;
+    }
+
+private:
+    double _value = 0.1, _growth = 2.0;
+};
+
+/// Whether the last steps gained little: three less than 2 %. Hundreds more would gain some 20 %,
+/// by thinner triangles.
+bool HasStalled(std::vector<double> const& residuals) {
+    constexpr size_t kSteps = 3;
+    size_t const last = residuals.size() - 1;
+    return last >= kSteps && residuals[last] > 0.98 * residuals[last - kSteps];
 }
 
 }  // namespace
 
 AreaFitReport FitAreaLaplacian(Far::TopologyRefiner const& refiner, Multigrid& multigrid,
-                               LaplacianBuilder const& build, std::span<double const> deltas,
+                               AreaLaplacianKind kind, std::span<double const> deltas,
                                std::span<double> positions, AreaFitOptions const& options) {
-    AreaFit fit(refiner, multigrid, build, deltas);
+    AreaFit fit(refiner, multigrid, kind, deltas, positions, options);
     AreaFitReport report;
     Misfit misfit = fit.Measure(positions);
-    auto const relative = [&] {
-        return misfit.scale > 0.0 ? std::sqrt(misfit.squares / misfit.scale) : 0.0;
-    };
-    report.residual = report.initialResidual = relative();
-    report.converged = report.residual <= options.tolerance;
+    std::vector<double> residuals{fit.FindRelativeSize(misfit)};
+    Damping damping;
     std::vector<double> moved;
-    while (!report.converged && report.steps < options.maxSteps) {
-        std::vector<double> const step = fit.FindStep(positions, misfit);
-        // Halving stands in for damping: the first share that lowers the sum is taken.
-        double share = 1.0;
-        Misfit next = fit.TryMove(positions, step, share, moved);
-        while (!(next.squares < misfit.squares) && share > 1.0 / 64)
-            next = fit.TryMove(positions, step, share *= 0.5, moved);
-        ++report.steps;
-        double const last = report.residual;
-        if (next.squares < misfit.squares) {
+    report.converged = residuals.back() <= options.tolerance;
+    while (!report.converged && !report.hasStalled && report.steps < options.maxSteps) {
+        fit.Linearise(positions, misfit);
+        for (bool isTaken = false; !isTaken && !damping.IsAtMost();) {
+            auto const step = fit.FindStep(damping.Get());
+            Misfit next = fit.TryMove(positions, step.move, moved);
+            isTaken = next.squares < misfit.squares;
+            if (!isTaken) {
+                damping.Raise();
+                continue;
+            }
+            damping.Adapt((misfit.squares - next.squares) / (misfit.squares - step.squares));
             std::copy(moved.begin(), moved.end(), positions.begin());
             misfit = std::move(next);
         }
-        report.residual = relative();
-        // There may be no solution: what gains less than 1 % is as near as this gets.
-        bool const isStill = share * FindLargest(step) < options.tolerance * FindExtent(positions);
-        report.converged =
-            report.residual <= options.tolerance || isStill || report.residual > 0.99 * last;
+        residuals.push_back(fit.FindRelativeSize(misfit));
+        report.converged = residuals.back() <= options.tolerance;
+        report.hasStalled = damping.IsAtMost() || HasStalled(residuals);
+        ++report.steps;
     }
+    report.initialResidual = residuals.front();
+    report.residual = residuals.back();
     report.iterations = fit.GetNumIterations();
     return report;
 }

@@ -307,21 +307,22 @@ MultigridReport Multigrid::Solve(std::span<double const> rightSide, std::span<do
     auto const judge = [&] {
         report.residual = unit > 0.0 ? misfit.residual / unit : 0.0;
         report.rounding = unit > 0.0 ? misfit.rounding / unit : 0.0;
-        report.converged = report.residual <= options.tolerance + report.rounding;
+        report.converged = report.residual <= std::max(options.tolerance, report.rounding);
     };
     judge();
     bool isDone = report.residual <= options.tolerance;
-    double before = std::numeric_limits<double>::infinity();
+    double goal = options.tolerance, before = std::numeric_limits<double>::infinity();
     // The residual that conjugate gradients carry along drifts from the solution's own, which
     // decides: where it has gained and is not there yet they start again from it.
     while (!isDone && report.iterations < options.maxIterations && report.residual < 0.5 * before) {
         before = report.residual;
-        report.iterations += self.FindCorrection(options.tolerance * unit,
-                                                 options.maxIterations - report.iterations);
+        report.iterations +=
+            self.FindCorrection(goal * unit, options.maxIterations - report.iterations);
         self.Correct(solution);
         misfit = self.Measure(rightSide, means, solution);
         judge();
         isDone = report.converged;
+        goal = 0.3 * std::max(options.tolerance, report.rounding);  // leaves room for rounding
     }
     return report;
 }

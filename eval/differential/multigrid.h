@@ -18,7 +18,7 @@ struct MultigridReport {
     /// What the residual may be because the solution's numbers are doubles: grows with the distance
     /// from the origin, and by 4 from level to level where b is 4^-k of a right-hand side.
     double rounding = 0.0;
-    bool converged = false;  ///< residual <= tolerance + rounding
+    bool converged = false;  ///< residual <= the larger of tolerance and rounding
 };
 
 struct MultigridOptions {

@@ -104,6 +104,43 @@ TEST_F(CliDifferential, WhatIsNotThereIsStatus3) {
                 "none.json");
 }
 
+// What of the coordinates no mesh has is no success unless it was asked for.
+TEST_F(CliDifferential, UnmetCoordinatesAreStatus4) {
+    Words const cotangent{"--space", "differential", "--rule", "loop", "--laplacian", "cotangent"};
+    auto const missed = Refine(Mesh("torustri"), cotangent);
+    EXPECT_EQ(missed.status, 4);
+    for (char const* part :
+         {"of the differential coordinates remains unmet", "more would gain little",
+          "--tolerance is 0.01; nothing is written without --keep-result"})
+        EXPECT_TRUE(Contains(missed.err, part)) << missed.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "out.obj"));
+    double const residual = Report()["residual"];
+    EXPECT_FALSE(Report()["converged"]);
+    EXPECT_TRUE(Report()["fit_stalled"]);
+    EXPECT_GT(Report()["fit_steps"], 3);
+    auto const accepted =
+        Refine(Mesh("torustri"), cotangent + Words{"--tolerance", fmt::format("{}", 2 * residual)});
+    EXPECT_EQ(accepted.status, 0) << accepted.err;
+    EXPECT_TRUE(Report()["converged"]);
+    EXPECT_TRUE(std::filesystem::exists(folder / "out.obj"));
+}
+
+TEST_F(CliDifferential, TheEditFileStandsInTheHelp) {
+    Outcome const help = Limn({"refine", "--help"});
+    for (char const* key : {"\"curvature\"", "\"factor\"", "\"rotate\"", "\"axis\"", "\"degrees\"",
+                            "\"filter\"", "\"polarise\""})
+        EXPECT_TRUE(Contains(help.out, key)) << key;
+}
+
+TEST_F(CliDifferential, DeepEditsAreStatus3InOneShortLine) {
+    std::string const edit = folder.Write(
+        "deep.json", "{\"filter\": " + std::string(60000, '[') + std::string(60000, ']') + "}");
+    std::string const error =
+        ExpectError(Refine(Mesh("icosa"), {"--space", "differential", "--edit", edit}), 3,
+                    "nested more than 4 deep");
+    EXPECT_LT(error.size(), edit.size() + 100);
+}
+
 TEST_F(CliDifferential, CurvesGoThrough) {
     std::string const square =
         folder.Write("square.obj", "v 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nl 1 2 3 4 1\n");

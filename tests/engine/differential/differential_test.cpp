@@ -72,6 +72,30 @@ TEST(Differential, AttributesFollow) {
     EXPECT_EQ(differential.uvs, spatial.uvs);
 }
 
+// Far from the origin nothing is lost but the digits that coordinates lose by their size; 2^-20
+// keeps moved points exact.
+TEST(Differential, TranslationsCostNothingButTheirDigits) {
+    for (auto scene : {LoadBumpy(), test::LoadDifferential("gridholetri", Sdc::SCHEME_LOOP)}) {
+        for (double& x : scene.positions) x = std::round(x * 0x1p20) / 0x1p20;
+        double const diagonal = test::BoxDiagonal(scene.positions);
+        for (double diagonals : {10.0, 125.0, 1e4}) {
+            double const offset = std::round(diagonals * diagonal);
+            auto moved = scene;
+            for (double& x : moved.positions) x += offset;
+            for (int dirMagLevels : {0, 1}) {
+                DifferentialOptions const options{.dirMagLevels = dirMagLevels, .tolerance = 1e-12};
+                auto here = RefineAndReport(scene, 3, options);
+                auto const there = RefineAndReport(moved, 3, options);
+                EXPECT_TRUE(there.report.converged);
+                for (double& x : here.mesh.positions) x += offset;
+                EXPECT_LT(test::LargestDifference(here.mesh.positions, there.mesh.positions),
+                          0x1p-53 * 16.0 * (offset + diagonal) + 1e-11 * diagonal)
+                    << diagonals << " diagonals off";
+            }
+        }
+    }
+}
+
 // All levels in space leave nothing to do: the mesh itself has its coordinates.
 TEST(Differential, AllLevelsInSpaceChangeNothing) {
     auto const scene = LoadBumpy();
@@ -138,15 +162,33 @@ TEST(Differential, TheFilterIsThePapers) {
     EXPECT_NEAR(engine::PolariseCurvature(0.75), 0.5 + std::pow(0.75 / 8 - 1.0 / 16, 0.25), 1e-15);
 }
 
-// Laplacians that depend on the result: finite, nearer to their coordinates than the start, and
-// said so.
-TEST(Differential, AreaLaplaciansAreFitted) {
+// Laplacians that depend on the result: what remains of their coordinates is reported, and has
+// converged where that is no more than was asked for. The handle stays.
+TEST(Differential, AreaLaplaciansAreFittedAsFarAsTheyCan) {
+    auto const scene = LoadBumpy();
     for (auto laplacian : {engine::Laplacian::Cotangent, engine::Laplacian::Mesh}) {
-        auto const result = RefineAndReport(LoadBumpy(), 1, {.laplacian = laplacian});
-        EXPECT_TRUE(result.report.converged);
-        EXPECT_LT(result.report.residual, 0.5);
-        EXPECT_TRUE(test::AreFinite(result.mesh.positions));
+        DifferentialOptions options{.laplacian = laplacian, .fitTolerance = 1e-6};
+        auto const best = RefineAndReport(scene, 1, options);
+        EXPECT_FALSE(best.report.converged);
+        EXPECT_TRUE(best.report.hasFitStalled);
+        EXPECT_LT(best.report.residual, 0.05);
+        EXPECT_TRUE(test::AreFinite(best.mesh.positions));
+        options.fitTolerance = 0.2;
+        auto const good = RefineAndReport(scene, 1, options);
+        EXPECT_TRUE(good.report.converged);
+        EXPECT_FALSE(good.report.hasFitStalled);
+        EXPECT_LE(good.report.residual, 0.2);
+        EXPECT_LT(good.report.fitSteps, best.report.fitSteps);
+        auto const spatial = test::Refine(scene, 1);
+        for (size_t c = 0; c < 3; ++c) EXPECT_EQ(good.mesh.positions[c], spatial.positions[c]);
     }
+}
+
+// Each vertex has some 200 neighbours; what would take many minutes is refused before it begins.
+TEST(Differential, TheMeshLaplaceOperatorHasASizeLimit) {
+    auto const scene = test::MakeTriangleTorus(16, 13);
+    EXPECT_EQ(test::CodeOf([&] { Refine(scene, 4, {.laplacian = engine::Laplacian::Mesh}); }),
+              ErrorCode::TooLarge);
 }
 
 TEST(Differential, SizeAndTangentialShareAreWarnedOf) {
