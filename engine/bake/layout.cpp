@@ -114,7 +114,9 @@ Attributes MakeAttributes(BakeOptions const& options, FileLayout const& file, Mo
         {"limn:tile", std::to_string(tile)},
         {"limn:units", units},
         {"limn:version", kVersionAndBuild}};
-    if (options.against) attributes.emplace_back("limn:against", options.against->GetSha256());
+    for (MapTraits const& map : file.maps) {
+        if (map.against) attributes.emplace_back("limn:against", *map.against);
+    }
     if (options.encoding) {
         attributes.emplace_back("limn:scale", fmt::format("{}", options.encoding->scale));
         attributes.emplace_back("limn:offset", fmt::format("{}", options.encoding->offset));

@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "engine/bake/maps/map_table.h"
+#include "engine/bake/output_names.h"
 #include "engine/images/exr_writer.h"
 #include "engine/io/mesh_writer.h"
 #include "support/cli.h"
@@ -91,6 +93,50 @@ std::vector<Row> const kRows{
     {"--progress", {"--progress", "lines"}, {}, "plain", Effect::None},
     {"--quiet", {"--quiet"}, {}, "plain", Effect::None}};
 
+using Flags = std::set<Words>;  // each with what follows it
+
+/// A map, and the flags that concern it beside those of all maps.
+struct MapRow {
+    std::string map;
+    Flags own{};
+};
+
+Flags const kOfAllMaps{{"--samples", "2"}, {"--mip"}, {"--coverage"}, {"--encode", "2,0.5"}};
+
+std::vector<MapRow> const kMapRows{
+    {"mean"},
+    {"gaussian"},
+    {"k1"},
+    {"k2"},
+    {"curvedness"},
+    {"shape-index"},
+    {"curvature"},
+    {"principal-direction"},
+    {"position"},
+    {"normal", {{"--half=normal"}}},
+    {"displacement", {{"--against", "MOVED"}, {"--vector"}}},
+    {"stretch"},
+    {"tension", {{"--rest", "MOVED"}}},
+    {"bands", {{"--bands", "3"}, {"--vector"}}},
+    {"noise",
+     {{"--noise-octaves", "2"}, {"--noise-seed", "7"}, {"--noise-ramp", "#000000,#ff8000"}}},
+    {"field", {{"--field", "FIELD"}, {"--normalize"}}},
+    {"overlap"},
+    {"primvar:color"}};
+
+/// The same without the map field, of which there are no vectors in tangent space.
+std::vector<MapRow> const kTangentRows{
+    {"normal"},
+    {"displacement", {{"--against", "MOVED"}, {"--vector"}, {"--space", "tangent"}}},
+    {"bands", {{"--vector"}, {"--space", "tangent"}}},
+    {"noise", {{"--normalize"}, {"--noise-frequency", "3"}, {"--noise-gain", "0.9"}}}};
+
+Words List(Flags const& flags) {
+    Words words;
+    for (Words const& flag : flags) words = words + flag;
+    return words;
+}
+
 /// All that a reader of the file can see of its pixels.
 struct Image {
     std::string form;
@@ -129,6 +175,7 @@ protected:
         materials.faceGroup.assign(torus.cage.faceSizes.size(), 0);
         materials.faceGroup.back() = 1;
         std::string const mesh = folder / "m.obj", moved = folder / "moved.obj";
+        torus.primvars = {{"color", 3, {torus.positions.begin(), torus.positions.end()}}};
         engine::WriteMesh(mesh, torus, Precision::Float);
         for (size_t i = 0; i < torus.positions.size(); i += 3) torus.positions[i] *= 1.25;
         engine::WriteMesh(moved, torus, Precision::Float);
@@ -175,6 +222,27 @@ protected:
         return folder / name;
     }
 
+    /// Each map's file is the same to the byte alone, with the flags that concern it, and beside
+    /// all the others with all flags.
+    void ExpectSameInCompany(std::vector<MapRow> const& rows) const {
+        Flags all = kOfAllMaps;
+        std::string maps;
+        for (auto const& [map, own] : rows) {
+            all.insert(own.begin(), own.end());
+            maps += (maps.empty() ? "" : ",") + map;
+        }
+        BakeTo("all.{map}.exr", files.at("MESH"), Words{"--maps", maps} + List(all));
+        for (auto const& [map, own] : rows) {
+            Flags flags = kOfAllMaps;
+            flags.insert(own.begin(), own.end());
+            BakeTo("alone.{map}.exr", files.at("MESH"), Words{"--maps", map} + List(flags));
+            std::string const ending = "." + engine::AsFileName(map) + ".exr";
+            EXPECT_TRUE(test::ReadText(folder / ("alone" + ending)) ==
+                        test::ReadText(folder / ("all" + ending)))
+                << map;
+        }
+    }
+
     std::map<std::string, std::string> const files = MakeFiles();
 };
 
@@ -197,6 +265,18 @@ TEST_F(BakeOptionsInTheFile, AreThoseThatAffectPixels) {
         EXPECT_NE(engine::ReadExrAttributes(with, "limn:"),
                   engine::ReadExrAttributes(without, "limn:"));
     }
+}
+
+TEST_F(BakeOptionsInTheFile, AreThoseOfItsOwnMap) {
+    ExpectSameInCompany(kMapRows);
+    ExpectSameInCompany(kTangentRows);
+}
+
+// A new map has to be told of above.
+TEST_F(BakeOptionsInTheFile, AreKnownOfEveryMap) {
+    Words known;
+    for (MapRow const& row : kMapRows) known.push_back(row.map);
+    EXPECT_EQ(known, engine::ListFixedMapNames() + Words{"primvar:color"});
 }
 
 // A new option has to be told of above.

@@ -90,6 +90,7 @@ std::unique_ptr<Map> MakeDisplacementMap(std::string const& name, MapOptions con
         traits.channels = {"R", "G", "B"};
         traits.range = RangeKind::Vector;
     }
+    traits.against = options.against->GetSha256();
     VectorFrame(options).AddNeeds(traits);
     return std::make_unique<DisplacementMap>(std::move(traits), options);
 }

@@ -55,8 +55,9 @@ struct MapTraits {
     bool isSameAcrossCreases = false;  ///< along infinitely sharp edges both sides agree
     bool isComparableAtSeams = true;   ///< along texture seams both sides agree
 
-    std::string optionText;         ///< its own options that affect pixels: "bands=4"
-    bool hasVectorOptions = false;  ///< isVector and space affect it, too
+    std::string optionText;              ///< its own options that affect pixels: "bands=4"
+    std::optional<std::string> against;  ///< SHA-256 of the mesh that it leads to
+    bool hasVectorOptions = false;       ///< isVector and space affect it, too
 
     int GetNumChannels() const { return static_cast<int>(channels.size()); }
     /// The groups, or the one that all channels are in.

@@ -73,7 +73,8 @@ private:
 std::unique_ptr<Map> MakeNoiseMap(std::string const& name, MapOptions const& options,
                                   Model const&) {
     MapTraits traits{.name = name, .channels = {"Y"}, .units = "amplitude"};
-    if (options.isNormalized) {
+    bool const isShare = options.isNormalized && !options.noiseRamp;
+    if (isShare) {
         traits.range = RangeKind::Positive;
         traits.units = "share of the range";
         traits.limits = {0.0f, 1.0f};
@@ -81,12 +82,11 @@ std::unique_ptr<Map> MakeNoiseMap(std::string const& name, MapOptions const& opt
     if (options.noiseRamp) {
         traits.range = RangeKind::Colours;
         traits.units = "colour";
-        traits.limits.reset();
         traits.channels = {"R", "G", "B"};
     }
     traits.optionText = fmt::format("octaves={} frequency={} gain={} seed={} normalize={} ramp={}",
                                     options.noise.octaves, options.noise.frequency.value_or(0.0),
-                                    options.noise.gain, options.noise.seed, options.isNormalized,
+                                    options.noise.gain, options.noise.seed, isShare,
                                     options.noiseRamp ? options.noiseRamp->GetText() : "none");
     return std::make_unique<NoiseMap>(std::move(traits), options);
 }

@@ -234,14 +234,28 @@ TEST_F(Layout, AttributesTellInputMapsOptionsUnitsAndVersion) {
               "mean " + file.maps[0].units + "; stretch " + file.maps[1].units);
     for (char const* missing : {"limn:against", "limn:scale", "limn:offset", "textureformat"})
         EXPECT_FALSE(plain.contains(missing)) << missing;
-    own.against = torus.WithPoints(torus.GetPositions(), "of the other mesh");
     own.encoding = engine::Encoding{0.5, 0.25};
     own.hasMips = true;
     auto const rich = AsMap(engine::MakeAttributes(own, file, torus, 1012));
-    EXPECT_EQ(rich.at("limn:against"), "of the other mesh");
     EXPECT_EQ(rich.at("limn:scale"), "0.5");
     EXPECT_EQ(rich.at("limn:offset"), "0.25");
     EXPECT_EQ(rich.at("textureformat"), "Plain Texture");
+}
+
+// The other mesh is told by files that lead to it, whatever else is baked.
+TEST_F(Layout, AttributesTellTheMeshThatDisplacementLeadsTo) {
+    BakeOptions own = options;
+    own.against = model.WithPoints(model.GetPositions(), "of the other mesh");
+    own.maps = {"mean", "displacement"};
+    auto const maps = engine::MakeMaps(own, model);
+    auto const apart = engine::LayOutFiles(maps, "{map}.exr", false);
+    EXPECT_FALSE(
+        AsMap(engine::MakeAttributes(own, apart.at(0), model, 1001)).contains("limn:against"));
+    auto const together = engine::LayOutFiles(maps, "a.exr", false);
+    for (FileLayout const& file : {apart.at(1), together.at(0)}) {
+        EXPECT_EQ(AsMap(engine::MakeAttributes(own, file, model, 1001)).at("limn:against"),
+                  "of the other mesh");
+    }
 }
 
 /// A file of a few texels with the given attributes.
