@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,9 @@ struct BakeOutput {
     std::string sha256;                 ///< empty where none was asked for, or nothing can be read
     int tile = 1001, width = 0, height = 0;
     bool wasSkipped = false;
-    TangentialPart leftOut;        ///< of displacements along the normal
-    float min = 0.0f, max = 0.0f;  ///< over covered texels, all channels
+    std::optional<std::array<double, 3>> origin;  ///< taken off positions, where asked for
+    TangentialPart leftOut;                       ///< of displacements along the normal
+    float min = 0.0f, max = 0.0f;                 ///< over covered texels, all channels
 };
 
 /// Texels over which several faces lie.

@@ -8,62 +8,36 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "engine/scene/extent.h"
+
 namespace limn::engine {
 
 namespace {
 
 // Layouts are written with so many digits that charts which touch reach over one another by less.
-constexpr double kDeepEnough = 0.05;   // texels
-constexpr double kOftenEnough = 1e-3;  // of all covered texels; with faces smaller than that
-constexpr double kMostLeftOut = 0.05;  // of the longest displacement
-constexpr double kMostRounded = 1e-3;  // of the mesh's size
+constexpr double kDeepEnough = 0.05;         // texels
+constexpr double kOftenEnough = 1e-3;        // of all covered texels; with faces smaller than that
+constexpr double kMostLeftOut = 0.05;        // of the longest displacement
+constexpr double kMostRoundedInHalf = 1e-3;  // of the mesh's size; floats: kMostRounded
 
-/// The distance from a number to the next one of half precision.
-double GetHalfStep(double value) {
-    constexpr int kDigits = 11, kSmallestExponent = -24;
-    int exponent = 0;
-    std::frexp(value, &exponent);
-    return std::ldexp(1.0, std::max(exponent - kDigits, kSmallestExponent));
-}
-
-/// The largest coordinate, in value or below zero, and the diagonal of the box.
-struct Extent {
-    double farthest = 0.0, diagonal = 0.0;
-
-    explicit Extent(std::vector<double> const& positions) {
-        double squares = 0.0;
-        for (size_t c = 0; c < 3; ++c) {
-            double low = positions[c], high = positions[c];
-            for (size_t i = c; i < positions.size(); i += 3) {
-                low = std::min(low, positions[i]);
-                high = std::max(high, positions[i]);
-            }
-            farthest = std::max({farthest, -low, high});
-            squares += (high - low) * (high - low);
-        }
-        diagonal = std::sqrt(squares);
-    }
-};
-
-/// Places are told by their distance to the origin: far from it, half precision has no digits left
-/// for the mesh.
-void WarnOfRoundedPlaces(Model const& model, BakeOptions const& options,
-                         std::vector<FileLayout> const& files, Job& job) {
-    bool const isRounded = std::ranges::any_of(files, [&](FileLayout const& file) {
-        return std::ranges::any_of(file.maps, [&](MapTraits const& map) {
-            return map.isPlace && options.IsHalf(map.name);
-        });
-    });
-    if (!isRounded) return;
-    Extent const extent(model.GetPositions());
+/// Places are told by their distance to the origin: far from it there are no digits left for the
+/// mesh.
+void WarnOfRoundedPlaces(Model const& model, BakeOptions const& options, MapTraits const& map,
+                         Job& job) {
+    Extent const extent =
+        FindExtent(Subtract(model.GetPositions(), map.origin.value_or(std::array<double, 3>{})));
+    bool const isHalf = options.IsHalf(map.name);
     Encoding const encoding = options.encoding.value_or(Encoding{});
     double const scale = std::abs(encoding.scale);
-    double const step = GetHalfStep(scale * extent.farthest + std::abs(encoding.offset));
-    if (!(step > kMostRounded * scale * extent.diagonal)) return;
-    job.Warn(
-        fmt::format("{}: positions of half precision are {:g} apart, of a mesh of size {:g}; "
-                    "name the other maps by `halfMaps`, and positions stay exact",
-                    model.GetPath(), step / scale, extent.diagonal));
+    double const farthest = scale * extent.GetFarthest() + std::abs(encoding.offset);
+    double const step = isHalf ? GetHalfStep(farthest) : GetFloatStep(farthest);
+    double const most = isHalf ? kMostRoundedInHalf : kMostRounded;
+    if (!(step > most * scale * extent.GetDiagonal())) return;
+    job.Warn(fmt::format(
+        "{}: positions of {} precision are {:g} apart, of a mesh of size {:g}{}; `origin` auto "
+        "writes them relative to a point near the mesh",
+        model.GetPath(), isHalf ? "half" : "single", step / scale, extent.GetDiagonal(),
+        isHalf ? "; name the other maps by `halfMaps`, and positions stay floats" : ""));
 }
 
 /// "materials red and blue", of the first kind of group that tells all or most of the texels apart.
@@ -132,7 +106,11 @@ void WarnOfBareFaces(Model const& model, Job& job) {
 void WarnBeforeBake(Model const& model, BakeOptions const& options,
                     std::vector<FileLayout> const& files, Job& job) {
     if (options.group.empty()) WarnOfBareFaces(model, job);
-    WarnOfRoundedPlaces(model, options, files, job);
+    for (FileLayout const& file : files) {
+        for (MapTraits const& map : file.maps) {
+            if (map.isPlace) WarnOfRoundedPlaces(model, options, map, job);
+        }
+    }
 }
 
 void WarnAfterBake(Model const& model, BakeOptions const& options, BakeReport const& report,

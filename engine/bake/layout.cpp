@@ -46,6 +46,13 @@ std::vector<FileLayout> LayOutFiles(std::vector<std::unique_ptr<Map>> const& map
     return files;
 }
 
+std::optional<std::array<double, 3>> FileLayout::FindOrigin() const {
+    for (MapTraits const& map : maps) {
+        if (map.origin) return map.origin;
+    }
+    return {};
+}
+
 std::vector<char> FileLayout::FindHalfChannels(BakeOptions const& options) const {
     std::vector<char> isHalf;
     bool areAll = true;
@@ -120,6 +127,10 @@ Attributes MakeAttributes(BakeOptions const& options, FileLayout const& file, Mo
     if (options.encoding) {
         attributes.emplace_back("limn:scale", fmt::format("{}", options.encoding->scale));
         attributes.emplace_back("limn:offset", fmt::format("{}", options.encoding->offset));
+    }
+    for (MapTraits const& map : file.maps) {
+        std::string const origin = map.GetOriginText();
+        if (!origin.empty()) attributes.emplace_back("limn:origin", origin);
     }
     if (options.hasMips) {  // what texture systems look for before they trust a file's levels
         attributes.emplace_back("textureformat", "Plain Texture");

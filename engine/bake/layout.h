@@ -22,6 +22,9 @@ struct FileLayout {
     std::vector<std::string> channelNames;  ///< EXR names; coverage last
     std::vector<ChannelGroup> groups;       ///< of the planes, from 0
 
+    /// What is taken off the positions in it, where that was asked for.
+    std::optional<std::array<double, 3>> FindOrigin() const;
+
     /// Per channel, whether it is written with 16 bits; coverage is where all maps are.
     std::vector<char> FindHalfChannels(BakeOptions const& options) const;
 };

@@ -12,6 +12,7 @@
 
 #include "engine/bake/overlap_log.h"
 #include "engine/images/pixel_kernel.h"
+#include "engine/scene/extent.h"
 #include "eval/kernels/dispatch.h"
 #include "far_ext/error.h"
 
@@ -101,7 +102,14 @@ StripBaker::StripBaker(Model const& model, TexturedFaces const& faces, BakeOptio
       _maps(maps),
       _job(job),
       _surface(model.GetRefiner()),
-      _baked{model, _surface, faces.surface, faces.isBaked, options.width, options.height},
+      _baked{model,
+             _surface,
+             faces.surface,
+             faces.isBaked,
+             options.width,
+             options.height,
+             FindFloatOrigin(FindExtent(model.GetPositions()))},
+      _positions(Subtract(model.GetPositions(), _baked.floatOrigin)),
       _hasTexels(model.GetCage().faceSizes.size()) {
     for (auto const& map : maps) map->Prepare(_baked, job);
     ArrangePasses();
@@ -110,7 +118,7 @@ StripBaker::StripBaker(Model const& model, TexturedFaces const& faces, BakeOptio
 /// Sorts maps by the precision they are evaluated at, which the least of what they need decides:
 /// curvature is taken in double where pieces are deep, and not nearer to a corner than 2^-16.
 void StripBaker::ArrangePasses() {
-    _values.push_back({_model.GetPositions(), 3});
+    _values.push_back({_positions, 3});
     int numChannels = 3;
     for (eval::Quantity least : {eval::Quantity::Position, eval::Quantity::Curvature}) {
         Pass pass;

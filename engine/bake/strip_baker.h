@@ -79,6 +79,7 @@ private:
     Job& _job;
     eval::LimitSurface _surface;
     BakedSurface const _baked;
+    std::vector<double> const _positions;  // relative to the surface's floatOrigin
     std::vector<Pass> _passes;
     std::vector<CountedMap> _countedMaps;
     std::vector<eval::FaceTree::Values> _values;  // of the faces' trees: positions, then the maps'

@@ -20,6 +20,7 @@ TileJob::TileJob(int tile, StripBaker& baker, std::vector<FileLayout> const& fil
         output.tile = tile;
         output.width = options.width;
         output.height = options.height;
+        output.origin = file.FindOrigin();
         output.min = std::numeric_limits<float>::infinity();
         output.max = -output.min;
         _sinks.push_back(destination.Open(file, output));

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "engine/cli/console.h"
 #include "engine/cli/report.h"
 #include "engine/cli/run_command.h"
+#include "engine/io/written_numbers.h"
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
 
@@ -24,7 +26,10 @@ struct CommonOptions {
     std::string reportPath;
     std::optional<double> weld;  ///< the tolerance
     Orientation orientation = Orientation::Right;
-    Precision precision = Precision::Float;
+    std::optional<Precision> precision;  ///< none: float, meshes in double where that is too little
+
+    /// Of arithmetic, and of numbers that are not a mesh's coordinates.
+    Precision GetPrecision() const { return precision.value_or(Precision::Float); }
     std::optional<Console::Style> progress;  ///< none: what suits stderr
     int numThreads = 0;
     bool isQuiet = false, isVerbose = false;
@@ -61,6 +66,18 @@ public:
     engine::Model Load(std::string const& path, Defects defects = Defects::Warn);
 
     void Warn(std::vector<std::string> const& messages);
+
+    /// A mesh file as the command line asks for it.
+    engine::MeshTarget MakeTarget(std::string const& path) const {
+        return {path, _common.precision};
+    }
+
+    /// As engine::ChoosePrecision, for a mesh with these positions.
+    Precision ChoosePrecision(std::string const& path, std::span<double const> positions);
+
+    /// Writes the mesh that the run is for, warns of what its format cannot hold, and reports the
+    /// precision.
+    void WriteMesh(std::string const& path, engine::Scene const& mesh, Precision precision);
 
     /// Writes the report where it was asked for, with the keys that all reports have.
     void WriteReport(RunEnd const& end) {

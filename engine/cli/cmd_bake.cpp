@@ -34,6 +34,7 @@ struct BakeArguments {
     std::vector<std::string> meshes, tiles, seamBounds;
     std::string size = "2048", compression = "zip", against, rest, fieldPath, encode, noiseRamp,
                 previewRange, half;
+    std::optional<std::string> origin;
     bool hasAudit = false;
     engine::AuditBounds bounds;
     engine::BakeOptions options;
@@ -83,6 +84,23 @@ engine::Encoding ParseEncoding(std::string const& text) {
             ParseNumber("--encode", std::string_view(text).substr(comma + 1))};
 }
 
+/// "auto", or "X,Y,Z".
+engine::Origin ParseOrigin(std::string const& text) {
+    if (text == "auto") return engine::AutomaticOrigin{};
+    std::array<double, 3> point{};
+    std::istringstream words(text);
+    std::string word;
+    size_t count = 0;
+    for (; std::getline(words, word, ','); ++count) {
+        if (count < point.size()) point[count] = ParseNumber("--origin", word);
+    }
+    if (count != point.size() || text.ends_with(',')) {
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("--origin: '{}' is neither X,Y,Z nor auto", text));
+    }
+    return point;
+}
+
 /// "mean,normal", or kAllMaps.
 void ParseHalf(std::string const& text, engine::BakeOptions& options) {
     options.isHalf = !text.empty();
@@ -117,11 +135,13 @@ struct MapFlag {
     char const* flag;
     char const* member;
 };
-constexpr MapFlag kMapFlags[] = {
-    {"--against", "against"},        {"--rest", "rest"},           {"--bands", "bands"},
-    {"--vector", "isVector"},        {"--space", "space"},         {"--field", "field"},
-    {"--normalize", "isNormalized"}, {"--noise-octaves", "noise"}, {"--noise-frequency", "noise"},
-    {"--noise-gain", "noise"},       {"--noise-seed", "noise"},    {"--noise-ramp", "noiseRamp"}};
+constexpr MapFlag kMapFlags[] = {{"--against", "against"},     {"--rest", "rest"},
+                                 {"--bands", "bands"},         {"--origin", "origin"},
+                                 {"--vector", "isVector"},     {"--space", "space"},
+                                 {"--field", "field"},         {"--normalize", "isNormalized"},
+                                 {"--noise-octaves", "noise"}, {"--noise-frequency", "noise"},
+                                 {"--noise-gain", "noise"},    {"--noise-seed", "noise"},
+                                 {"--noise-ramp", "noiseRamp"}};
 
 /// Refuses flags that would change nothing.
 void RefuseWithoutEffect(CLI::App const& verb, std::vector<std::string> const& maps) {
@@ -150,6 +170,7 @@ void RefuseWithoutEffect(CLI::App const& verb, std::vector<std::string> const& m
 engine::BakeOptions MakeOptions(BakeArguments const& a, CommonOptions const& common) {
     engine::BakeOptions options = a.options;
     if (!a.encode.empty()) options.encoding = ParseEncoding(a.encode);
+    if (a.origin) options.origin = ParseOrigin(*a.origin);
     if (!a.noiseRamp.empty()) options.noiseRamp = engine::ColourRamp::Parse(a.noiseRamp);
     if (!a.previewRange.empty()) options.previewRange = engine::PreviewRange::Parse(a.previewRange);
     ParseHalf(a.half, options);
@@ -183,6 +204,10 @@ void AddToReport(nlohmann::json& report, engine::BakeOutput const& output,
                          {"width", output.width}, {"height", output.height},
                          {"sha256", sha256},      {"skipped", output.wasSkipped},
                          {"min", output.min},     {"max", output.max}};
+    if (output.origin) {
+        entry["origin"] = *output.origin;
+        if (!report.contains("origin")) report["origin"] = *output.origin;  // the first mesh's
+    }
     if (output.leftOut.count > 0) {
         entry["tangential_rms"] = output.leftOut.GetRms();
         entry["tangential_max"] = output.leftOut.max;
@@ -352,6 +377,9 @@ void AddFileOptions(CLI::App& verb, BakeArguments& a) {
 void AddMapOptions(CLI::App& verb, BakeArguments& a) {
     verb.add_option("--against", a.against, "the mesh that displacement leads to");
     verb.add_option("--rest", a.rest, "of the map tension: the mesh before it was posed");
+    verb.add_option("--origin", a.origin,
+                    "X,Y,Z taken off the map position, or auto: a round point near the mesh's "
+                    "middle; header limn:origin");
     verb.add_option("--bands", a.options.bands,
                     "of the map bands: frequency bands, their smooth base included (default 4)")
         ->check(CLI::Range(1, 64));

@@ -30,16 +30,18 @@ Verb AddBands(CLI::App& app) {
                 auto bands = engine::SplitIntoBands(model, a->count, a->alpha, context.GetJob());
                 context.GetReport()["before"] = DescribeExtent(model, model.GetPositions());
                 engine::Scene output = model.MakeScene();
-                engine::MeshSequence files(context.GetCommon().precision);
+                // One for all, so that they add up as well as the mesh is written.
+                Precision const precision =
+                    context.ChoosePrecision(a->prefix, model.GetPositions());
+                engine::MeshSequence files;
                 auto outputs = nlohmann::json::array();
                 std::vector<std::string> warnings;
                 auto const add = [&](std::string const& path, std::vector<double>& positions) {
                     output.positions = std::move(positions);
-                    auto const leftOut = files.Add(path, output);
+                    engine::RoundAsWritten(path, precision, output.positions);
+                    auto const leftOut = files.Add(path, output, precision);
                     if (warnings.empty()) warnings = leftOut;  // one file speaks for all
-                    auto entry = DescribeExtent(model, output.positions);
-                    entry["file"] = path;
-                    outputs.push_back(std::move(entry));
+                    outputs.push_back(DescribeOutput(path, model, output.positions, precision));
                 };
                 for (size_t i = 0; i < bands.bands.size(); ++i)
                     add(fmt::format("{}.band{}.obj", a->prefix, i), bands.bands[i]);

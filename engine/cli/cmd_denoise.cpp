@@ -31,8 +31,10 @@ int Run(FilterArguments<Options> const& a, Context& context,
     context.GetReport()["before"] = DescribeExtent(model, model.GetPositions());
     engine::Scene output = model.MakeScene();
     output.positions = filter(model, a.options, context.GetJob());
+    Precision const precision = context.ChoosePrecision(a.output, output.positions);
+    engine::RoundAsWritten(a.output, precision, output.positions);
     context.GetReport()["after"] = DescribeExtent(model, output.positions);
-    context.Warn(engine::WriteMesh(a.output, output, context.GetCommon().precision));
+    context.WriteMesh(a.output, output, precision);
     return kDone;
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
+#include "engine/cli/names.h"
 #include "engine/cli/word_option.h"
 #include "engine/evaluate/evaluate.h"
 #include "engine/evaluate/frames.h"
@@ -31,12 +32,21 @@ void EvaluateFrames(EvalArguments const& a, engine::Model const& model,
     report["evaluator"] = a.evaluator ? GetName(*a.evaluator) : "double";
     report["frames"] = result.outputs.size();
     report["outputs"] = result.outputs;
+    report["precision_written"] = kPrecisionWords.GetWord(result.precision);
 }
 
 int Run(EvalArguments const& a, Context& context) {
     CommonOptions const& common = context.GetCommon();
     context.KeepStdoutForData(a.output.empty());
     auto const model = context.Load(a.mesh);
+    engine::Extent const extent = engine::FindExtent(model.GetPositions());
+    Precision const enough = engine::FindTablePrecision(extent);
+    if (common.precision == Precision::Float && enough == Precision::Double) {
+        context.GetJob().Warn(
+            fmt::format("{}: coordinates of 9 digits are {:g} apart, of a mesh of size {:.4g}; "
+                        "without --precision there are 17",
+                        a.mesh, engine::GetTableStep(extent), extent.GetDiagonal()));
+    }
     auto const places = engine::ReadPlaces(a.places);
     context.GetReport()["places"] = places.faces.size();
     if (!a.frames.empty()) {
@@ -48,7 +58,9 @@ int Run(EvalArguments const& a, Context& context) {
                                      context.GetJob());
     });
     context.GetReport()["places_without_limit"] = values.CountWithoutLimit();
-    std::string const text = engine::FormatValues(places.GetPlaces(), values, common.precision);
+    Precision const precision = common.precision.value_or(enough);
+    context.GetReport()["precision_written"] = kPrecisionWords.GetWord(precision);
+    std::string const text = engine::FormatValues(places.GetPlaces(), values, precision);
     if (a.output.empty())
         PrintData(text);
     else

@@ -144,11 +144,13 @@ int Run(FieldArguments const& a, Context& context) {
     auto const field = engine::DesignField(model, options, context.GetJob());
     AddToReport(context.GetReport(), field.audit);
 
-    Precision const precision = context.GetCommon().precision;
+    Precision const precision = context.GetCommon().GetPrecision();
     std::vector<std::string> warnings;
-    engine::MeshSequence files(precision);
+    engine::MeshSequence files;
     if (output == Output::Mesh) {
-        warnings = files.Add(a.output, field.mesh);
+        Precision const ofMesh = context.ChoosePrecision(a.output, field.mesh.positions);
+        context.GetReport()["precision_written"] = kPrecisionWords.GetWord(ofMesh);
+        warnings = files.Add(a.output, field.mesh, ofMesh);
         files.Add(a.output.substr(0, a.output.rfind('.')) + ".vectors.csv",
                   FormatVectors("vertex", field.vectors, precision));
     } else if (output == Output::Edges) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
+#include "engine/cli/names.h"
 #include "engine/fit/fit.h"
 #include "engine/io/mesh_writer.h"
 #include "engine/scene/refine.h"
@@ -102,6 +103,14 @@ std::string Explain(std::string const& path, engine::FitResult const& result, do
                 result.primvars[i].iterations);
         }
     }
+    if (result.report.converged) {
+        return fmt::format(
+            "{}: the limit of the result, its coordinates rounded to {}, misses vertex {} by "
+            "{:.2g} of the diagonal; the tolerance is {:.2g}{}",
+            path, kPrecisionWords.GetWord(result.precision), result.certificate.worstVertex,
+            result.certificate.max, tolerance,
+            result.precision == Precision::Float ? "; use --precision double" : "");
+    }
     return fmt::format(
         "{}: the residual is {:.2g} of the diagonal after {} applications of A, worst at vertex "
         "{}; the tolerance is {:.2g} and "
@@ -114,6 +123,7 @@ std::string Explain(std::string const& path, engine::FitResult const& result, do
 int Run(FitArguments const& a, Context& context) {
     engine::FitOptions options = a.options;
     options.method = ParseMethod(a.method);
+    options.target = context.MakeTarget(a.output);
     engine::RequireMeshEnding(a.output);
     if (options.keepsTopology && options.alpha == 0.0) {
         throw Error(ErrorCode::BadOption,
@@ -137,14 +147,7 @@ int Run(FitArguments const& a, Context& context) {
                         "program does",
                         a.output, options.alpha));
     }
-    Precision const precision = context.GetCommon().precision;
-    if (precision == Precision::Float && options.tolerance < 1e-7) {
-        context.GetJob().Warn(
-            fmt::format("{}: floats keep 6e-8 of a coordinate; use --precision double for a "
-                        "tolerance of {:.2g}",
-                        a.output, options.tolerance));
-    }
-    context.Warn(engine::WriteMesh(a.output, result.mesh, precision));
+    context.WriteMesh(a.output, result.mesh, result.precision);
     return result.HasConverged() ? kDone
                                  : context.MissTarget(Explain(a.mesh, result, options.tolerance));
 }

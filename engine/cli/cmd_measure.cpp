@@ -60,11 +60,14 @@ int RunMeasure(MeasureArguments const& a, Context& context) {
     CommonOptions const& common = context.GetCommon();
     engine::Job& job = context.GetJob();
     auto const json = ToJson(engine::Measure(model, a.surface, common.orientation, job));
-    engine::MeshSequence files(common.precision);
+    engine::MeshSequence files;
     if (!a.prefix.empty()) {
         auto const curved = engine::AddVertexCurvature(
             model, engine::FindVertexCurvature(model, a.surface, common.orientation, job));
-        context.Warn(files.Add(a.prefix + ".ply", curved));
+        std::string const path = a.prefix + ".ply";
+        Precision const precision = context.ChoosePrecision(path, curved.positions);
+        context.Warn(files.Add(path, curved, precision));
+        context.GetReport()["precision_written"] = kPrecisionWords.GetWord(precision);
         engine::PictureView const view{{a.view[0], a.view[1], a.view[2]}};
         if (a.hasPicture)
             engine::WritePng(files.Open(a.prefix + ".mean.png"),

@@ -7,6 +7,17 @@
 
 namespace limn::cli {
 
+namespace {
+
+/// One for all frames: the ends of the way decide.
+Precision ChoosePrecision(std::string const& prefix, engine::Model const& from,
+                          engine::Model const& to, Context& context) {
+    bool const isEndEnough = engine::AreFloatsEnough(engine::FindExtent(to.GetPositions()));
+    return context.ChoosePrecision(prefix, (isEndEnough ? from : to).GetPositions());
+}
+
+}  // namespace
+
 Verb AddMorph(CLI::App& app) {
     struct MorphArguments {
         std::string from, to, prefix;
@@ -35,17 +46,17 @@ Verb AddMorph(CLI::App& app) {
                 engine::Morph morph(from, to, a->options);
                 context.GetReport()["before"] = DescribeExtent(from, from.GetPositions());
                 engine::Scene output = to.MakeScene();
-                engine::MeshSequence files(context.GetCommon().precision);
+                Precision const precision = ChoosePrecision(a->prefix, from, to, context);
+                engine::MeshSequence files;
                 auto outputs = nlohmann::json::array();
                 std::vector<std::string> warnings;
                 for (int step = 1; step <= a->steps; ++step) {
                     std::string const path = fmt::format("{}.{:04}.obj", a->prefix, step);
                     output.positions = morph.MakeNext(context.GetJob());
-                    auto const leftOut = files.Add(path, output);
+                    engine::RoundAsWritten(path, precision, output.positions);
+                    auto const leftOut = files.Add(path, output, precision);
                     if (step == 1) warnings = leftOut;
-                    auto entry = DescribeExtent(to, output.positions);
-                    entry["file"] = path;
-                    outputs.push_back(std::move(entry));
+                    outputs.push_back(DescribeOutput(path, to, output.positions, precision));
                 }
                 context.GetReport()["after"] = DescribeExtent(to, output.positions);
                 files.Commit();

@@ -66,7 +66,7 @@ engine::DifferentialOptions MakeOptions(RefineArguments const& a, CommonOptions 
     options.levels = a.levels;
     options.rule = GetRule(a);
     // What is written should be right to its last digits.
-    options.tolerance = common.precision == Precision::Double ? 1e-12 : 1e-8;
+    options.tolerance = common.GetPrecision() == Precision::Double ? 1e-12 : 1e-8;
     if (a.tolerance) GetTolerance(options) = *a.tolerance;
     options.orientation = common.orientation;
     if (!a.editPath.empty()) options.edit = engine::ReadCurvatureEdit(a.editPath);
@@ -90,6 +90,7 @@ std::string Explain(engine::DifferentialReport const& found, bool isFit, double 
 engine::DifferentialResult RefineDifferentially(RefineArguments const& a,
                                                 engine::Model const& model, Context& context) {
     auto options = MakeOptions(a, context.GetCommon());
+    options.target = context.MakeTarget(a.output);
     auto result = engine::RefineDifferentially(model, options, context.GetJob());
     engine::DifferentialReport const& found = result.report;
     auto const report = context.GetReport();
@@ -138,8 +139,10 @@ int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& contex
     std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - start;
     size_t numPoints = 0;
     for (eval::Curve const& curve : fine) numPoints += curve.points.size();
-    engine::WritePolylines(a.output, fine, context.GetCommon().precision);
+    Precision const precision = context.ChoosePrecision(a.output, engine::ListCoordinates(fine));
+    engine::WritePolylines(a.output, fine, precision);
     auto const report = context.GetReport();
+    report["precision_written"] = kPrecisionWords.GetWord(precision);
     report["inputs"].push_back({{"path", a.mesh}, {"sha256", sha256}, {"curves", curves.size()}});
     report["vertices"] = report["unknowns"] = numPoints;
     report["solve_seconds"] = elapsed.count();
@@ -154,21 +157,20 @@ int RunRefine(RefineArguments const& a, CLI::App const& verb, Context& context) 
     auto const model = ApplyRule(a, context.GetCommon(), context.Load(a.mesh));
     context.GetReport()["inputs"].back()["subdivision"] =
         engine::DescribeSubdivision(model.GetCage());
-    engine::Scene fine;
-    bool isDone = true;
+    engine::DifferentialResult result;
+    result.report.converged = true;
     if (a.isDifferential) {
-        auto result = RefineDifferentially(a, model, context);
-        fine = std::move(result.mesh);
-        isDone = result.report.converged;
+        result = RefineDifferentially(a, model, context);
     } else {
-        fine = engine::RefineUniformly(
+        result.mesh = engine::RefineUniformly(
             model, {.levels = a.levels, .toLimit = a.toLimit, .rule = GetRule(a)},
             context.GetJob());
+        result.report.precision = context.ChoosePrecision(a.output, result.mesh.positions);
     }
-    if (isDone || a.keepsResult)
-        context.Warn(engine::WriteMesh(a.output, fine, context.GetCommon().precision));
-    context.GetReport()["vertices"] = fine.cage.numVertices;
-    context.GetReport()["faces"] = fine.cage.GetNumFaces();
+    bool const isDone = result.report.converged;
+    if (isDone || a.keepsResult) context.WriteMesh(a.output, result.mesh, result.report.precision);
+    context.GetReport()["vertices"] = result.mesh.cage.numVertices;
+    context.GetReport()["faces"] = result.mesh.cage.GetNumFaces();
     return isDone ? kDone : kNotReached;
 }
 

@@ -89,14 +89,15 @@ engine::SmoothStop MakeStop(SmoothArguments const& a) {
     return a.tolerance ? engine::StopAtResidual{*a.tolerance} : engine::StopAtResidual{};
 }
 
-engine::SmoothOptions MakeOptions(SmoothArguments const& a, Precision precision) {
+engine::SmoothOptions MakeOptions(SmoothArguments const& a, Context const& context) {
     engine::SmoothOptions options = a.options;
     options.stop = MakeStop(a);
     if (a.isGraph) options.constraint = engine::SmoothConstraint::Graph;
     if (a.preservesVolume) options.constraint = engine::SmoothConstraint::Volume;
     if (a.limitsWidth) options.onCollapse = engine::OnCollapse::LimitWidth;
     if (a.keepsResult) options.onCollapse = engine::OnCollapse::KeepResult;
-    options.precision = precision;
+    options.precision = context.GetCommon().GetPrecision();
+    options.target = context.MakeTarget(a.output);
     return options;
 }
 
@@ -184,21 +185,21 @@ int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     model = WithScheme(model, ChooseScheme(a, context.GetCommon(), model.GetCage()));
     context.GetReport()["inputs"].back()["subdivision"] =
         engine::DescribeSubdivision(model.GetCage());
-    Precision const precision = context.GetCommon().precision;
-    auto [mesh, found] = engine::Smooth(model, MakeWidths(a, verb, model),
-                                        MakeOptions(a, precision), context.GetJob());
+    auto [mesh, found] = engine::Smooth(model, MakeWidths(a, verb, model), MakeOptions(a, context),
+                                        context.GetJob());
     AddToReport(context.GetReport(), found);
     if (!found.HasConverged() && !a.keepsResult) return context.MissTarget(Explain(a.mesh, found));
 
     if (engine::GetEnding(a.output) == ".obj")  // which has no place for the widths
         std::erase_if(mesh->primvars, [](auto const& primvar) { return primvar.name == "width"; });
-    engine::MeshSequence files(precision);
-    auto const warnings = files.Add(a.output, *mesh);
+    engine::MeshSequence files;
+    auto const warnings = files.Add(a.output, *mesh, found.precision);
     if (!a.picture.empty())
         engine::WritePng(files.Open(a.picture),
                          engine::DrawShaded(*mesh, {{a.view[0], a.view[1], a.view[2]}}));
     files.Commit();
     context.Warn(warnings);
+    context.GetReport()["precision_written"] = kPrecisionWords.GetWord(found.precision);
     context.GetReport()["vertices"] = mesh->cage.numVertices;
     context.GetReport()["faces"] = mesh->cage.GetNumFaces();
     return found.HasConverged() ? kDone : context.MissTarget(Explain(a.mesh, found));

@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include "engine/cli/cli.h"
+#include "engine/cli/names.h"
 #include "engine/cli/option_names.h"
+#include "engine/io/mesh_writer.h"
 #include "engine/scene/defects.h"
 #include "engine/scene/subdivision_names.h"
 #include "engine/scene/weld.h"
@@ -89,6 +91,15 @@ void Context::NoteInput(std::string const& path, engine::Model const& model) {
 
 void Context::Warn(std::vector<std::string> const& messages) {
     for (std::string const& message : messages) _job.Warn(message);
+}
+
+Precision Context::ChoosePrecision(std::string const& path, std::span<double const> positions) {
+    return engine::ChoosePrecision(MakeTarget(path), engine::FindExtent(positions), _job);
+}
+
+void Context::WriteMesh(std::string const& path, engine::Scene const& mesh, Precision precision) {
+    Warn(engine::WriteMesh(path, mesh, precision));
+    GetReport()["precision_written"] = kPrecisionWords.GetWord(precision);
 }
 
 int Context::MissTarget(std::string message) {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/cli/cli.h"
+#include "engine/cli/names.h"
 #include "engine/fit/bands.h"
 
 namespace limn::cli {
@@ -22,6 +23,15 @@ inline nlohmann::json DescribeExtent(engine::Model const& model,
     auto const extent = engine::MeasureExtent(model, positions);
     nlohmann::json json{{"volume", nullptr}, {"bounding_box", {extent.low, extent.high}}};
     if (extent.volume) json["volume"] = *extent.volume;
+    return json;
+}
+
+/// The same of one of several files.
+inline nlohmann::json DescribeOutput(std::string const& path, engine::Model const& model,
+                                     std::vector<double> const& positions, Precision precision) {
+    auto json = DescribeExtent(model, positions);
+    json["file"] = path;
+    json["precision_written"] = kPrecisionWords.GetWord(precision);
     return json;
 }
 

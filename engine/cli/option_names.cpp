@@ -31,6 +31,7 @@ constexpr OptionName kOptionNames[] = {
     {"noiseRamp", "--noise-ramp"},
     {"octaves", "--noise-octaves"},
     {"orientation", "--orientation"},
+    {"origin", "--origin"},
     {"outputPattern", "-o"},
     {"path", "-o"},
     {"pattern", "-o"},

@@ -47,7 +47,8 @@ void AddCommonOptions(CLI::App& app, CommonOptions& o) {
     group(
         app.add_option("--report", o.reportPath, "write a JSON report of the run (- for stdout)"));
     group(AddWordOption(app, "--precision", o.precision, kPrecisionWords,
-                        "float (default) or double: digits of output"));
+                        "float or double: digits of output (default: float, of meshes far from "
+                        "the origin double)"));
     group(app.add_flag("--quiet", o.isQuiet, "no progress, no warnings"));
     group(app.add_flag("--verbose", o.isVerbose, "say more"));
     group(AddWordOption(app, "--progress", o.progress, kProgressWords,

@@ -187,6 +187,10 @@ Rows DifferentialRefinement::FindPositions() {
     _report.solveSeconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
+    if (_options.target) {
+        _report.precision = ChoosePrecision(*_options.target, FindExtent(positions), _job);
+        RoundAsWritten(_options.target->path, _report.precision, positions);
+    }
     double const size = FindSize(_spatial);
     _report.sizeRatio = size > 0.0 ? FindSize(positions) / size : 1.0;
     _report.energy = eval::FindThinPlateEnergy(

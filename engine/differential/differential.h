@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
+#include "engine/io/written_numbers.h"
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
 #include "eval/differential/mesh_curvature.h"
@@ -47,6 +49,9 @@ struct DifferentialOptions {
     double fitTolerance = 0.01;  ///< of the residual with a Laplacian that knows areas
     CurvatureEdit edit;
     Orientation orientation = Orientation::Right;
+    /// The file that the mesh is for: its coordinates are rounded to what that will hold. None:
+    /// they stay doubles.
+    std::optional<MeshTarget> target{};
 };
 
 struct DifferentialReport {
@@ -62,7 +67,8 @@ struct DifferentialReport {
     double tangentialShare = 0.0;  ///< of the differential coordinates; see eval::DirMag
     double sizeRatio =
         1.0;  ///< rms distance from the mean vertex, over that of the spatial refinement
-    eval::ThinPlateEnergy energy;
+    Precision precision = Precision::Double;  ///< what the mesh's coordinates are rounded to
+    eval::ThinPlateEnergy energy;             ///< of the rounded mesh, and so is the size
 };
 
 struct DifferentialResult {
@@ -76,7 +82,8 @@ struct DifferentialResult {
 /// space. The result has RefineUniformly's topology, attributes and vertex order; handles lie where
 /// that puts them. Its size is not the spatial one's, and nothing rescales it.
 ///
-/// \param job     told of creases, which get round, and of results that are not what was wanted
+/// \param job     told of creases, which get round, of results that are not what was wanted, and of
+///                a precision that was not asked for or loses too much
 /// \throws Error  as RefineUniformly; BadOption: contradicting levels or handles.  BadMesh:
 ///                boundaries that meet in a vertex, an edit of a vertex that is not there, with
 ///                cotangents a triangle without area. Unsupported: a Laplacian or rule that needs

@@ -92,6 +92,15 @@ PolylineFile ReadPolylines(std::string const& path) {
     return found;
 }
 
+std::vector<double> ListCoordinates(std::vector<eval::Curve> const& curves) {
+    std::vector<double> coordinates;
+    for (eval::Curve const& curve : curves) {
+        for (eval::DoubleLanes const& p : curve.points)
+            coordinates.insert(coordinates.end(), {p[0], p[1], p[2]});
+    }
+    return coordinates;
+}
+
 void WritePolylines(std::string const& path, std::vector<eval::Curve> const& curves,
                     Precision precision) {
     if (GetEnding(path) != ".obj") {

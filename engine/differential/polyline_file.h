@@ -23,6 +23,9 @@ struct PolylineFile {
 ///                points, a vertex at which curves branch
 PolylineFile ReadPolylines(std::string const& path);
 
+/// The coordinates of all points, 3 each.
+std::vector<double> ListCoordinates(std::vector<eval::Curve> const& curves);
+
 /// Writes curves as 'v' and 'l' of an OBJ file, complete or not at all. Numbers read back as the
 /// same float or double.
 ///

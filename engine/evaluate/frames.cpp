@@ -2,6 +2,7 @@
 #include "engine/evaluate/frames.h"
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -188,6 +189,7 @@ FramesReport EvaluateFrames(Model const& model, PlaceArrays const& places,
     // frames are many and independent, so that the cores are kept busy by different frames at
     // different stages.
     std::vector<std::unique_ptr<AtomicFile>> files(frames.size());
+    std::atomic<bool> isAnyDouble{false};
     job.Start("frames", frames.size());
     size_t next = 0;
     auto const choose = [&](tbb::flow_control& control) {
@@ -201,7 +203,10 @@ FramesReport EvaluateFrames(Model const& model, PlaceArrays const& places,
         CheckTopology(model, frame);
         auto file = std::make_unique<AtomicFile>(report.outputs[i]);
         auto const values = MakeLimitValues(surface, places.faces, evaluate(frame));
-        file->Write(FormatValues(places, values, options.precision));
+        Precision const precision =
+            options.precision.value_or(FindTablePrecision(FindExtent(frame.positions)));
+        if (precision == Precision::Double) isAnyDouble = true;
+        file->Write(FormatValues(places, values, precision));
         file->Finish();
         files[i] = std::move(file);
         job.Advance();
@@ -218,6 +223,7 @@ FramesReport EvaluateFrames(Model const& model, PlaceArrays const& places,
         static_cast<size_t>(std::count_if(places.faces.begin(), places.faces.end(),
                                           [&](Index face) { return !surface.HasLimit(face); }));
     report.numRows = stencils.GetNumRows();
+    if (isAnyDouble) report.precision = Precision::Double;
     return report;
 }
 

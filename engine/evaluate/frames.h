@@ -29,7 +29,8 @@ std::vector<Frame> FindFrames(std::string const& folderOrPattern);
 struct FrameOptions {
     std::string outputPattern;  ///< with {frame}
     Orientation orientation = Orientation::Right;
-    Precision precision = Precision::Float;  ///< 9 or 17 significant digits
+    /// Of the tables (FormatValues); none: FindTablePrecision's for each frame.
+    std::optional<Precision> precision{};
     /// What applies the table, in float; none: in double.
     std::optional<eval::EvaluatorKind> evaluator{};
 };
@@ -37,6 +38,7 @@ struct FrameOptions {
 struct FramesReport {
     size_t numWithoutLimit = 0;  ///< places, of each frame
     size_t numRows = 0;          ///< places evaluated by the table; the others one by one
+    Precision precision = Precision::Float;  ///< the most that a frame was written with
     std::vector<std::string> outputs;
 };
 

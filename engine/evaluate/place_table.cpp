@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/evaluate/place_table.h"
 
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -10,6 +11,12 @@
 #include "engine/io/number_table.h"
 
 namespace limn::engine {
+
+namespace {
+
+constexpr int kShortDigits = 9;
+
+}  // namespace
 
 PlaceTable ReadPlaces(std::string const& path) {
     NumberTable table = ReadNumberTable(path, {{"face", "s", "t"}});
@@ -31,10 +38,21 @@ void RefuseRow(PlaceTable const& table, PlaceError const& error) {
                             table.lines[error.GetPlace()], error.GetReason()));
 }
 
+double GetTableStep(Extent const& mesh) {
+    double const farthest = mesh.GetFarthest();
+    return farthest > 0.0 ? std::pow(10.0, std::floor(std::log10(farthest)) - kShortDigits + 1)
+                          : 0.0;
+}
+
+Precision FindTablePrecision(Extent const& mesh) {
+    return GetTableStep(mesh) <= kMostRounded * mesh.GetDiagonal() ? Precision::Float
+                                                                   : Precision::Double;
+}
+
 std::string FormatValues(PlaceArrays const& places, LimitValues const& values,
                          Precision precision) {
     std::string text = "face,s,t,px,py,pz,nx,ny,nz,mean,gaussian,k1,k2,d1x,d1y,d1z\n";
-    int const digits = precision == Precision::Double ? 17 : 9;
+    int const digits = precision == Precision::Double ? 17 : kShortDigits;
     auto const append = [&](double value) {
         fmt::format_to(std::back_inserter(text), ",{:.{}g}", value, digits);
     };

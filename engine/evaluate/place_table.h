@@ -6,6 +6,7 @@
 
 #include "engine/evaluate/evaluate.h"
 #include "engine/evaluate/places.h"
+#include "engine/scene/extent.h"
 
 namespace limn::engine {
 
@@ -35,9 +36,16 @@ auto NamingRows(PlaceTable const& table, Work const& work) {
     }
 }
 
+/// The distance between coordinates of 9 digits, at the farthest of a mesh.
+double GetTableStep(Extent const& mesh);
+
+/// The digits that a mesh needs (FormatValues): 17 where 9 are more than kMostRounded of its
+/// diagonal apart.
+Precision FindTablePrecision(Extent const& mesh);
+
 /// CSV text of places and their values, one row per place.
 ///
-/// \param precision  9 or 17 significant digits
+/// \param precision  float: 9 significant digits, double: 17
 std::string FormatValues(PlaceArrays const& places, LimitValues const& values, Precision precision);
 
 }  // namespace limn::engine

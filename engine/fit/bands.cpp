@@ -14,22 +14,14 @@
 namespace limn::engine {
 
 MeshExtent MeasureExtent(Model const& model, std::span<double const> positions) {
-    MeshExtent extent;
-    far_ext::Points const points(positions);
-    Eigen::Vector3d low = points[0], high = low;
-    for (size_t vertex = 1; vertex < points.GetCount(); ++vertex) {
-        low = low.cwiseMin(points[vertex]);
-        high = high.cwiseMax(points[vertex]);
-    }
-    for (size_t c = 0; c < 3; ++c) {
-        extent.low[c] = low[static_cast<Eigen::Index>(c)];
-        extent.high[c] = high[static_cast<Eigen::Index>(c)];
-    }
+    MeshExtent extent{FindExtent(positions), {}};
     auto const& level = model.GetLevel();
     for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
         if (level.IsEdgeBoundary(edge) || level.IsEdgeNonManifold(edge)) return extent;
     }
     // Tetrahedra from a point near by, which keeps the digits of a mesh far from the origin.
+    far_ext::Points const points(positions);
+    Eigen::Vector3d const low(extent.low.data());
     double sixfold = 0.0;
     size_t corner = 0;
     for (int size : model.GetCage().faceSizes) {

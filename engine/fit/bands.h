@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "engine/scene/extent.h"
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
 
 namespace limn::engine {
 
-/// Volume and bounding box of a mesh's polygons.
-struct MeshExtent {
+/// Bounding box and volume of a mesh's polygons.
+struct MeshExtent : Extent {
     std::optional<double> volume;  ///< none where the mesh is open or not manifold
-    std::array<double, 3> low{}, high{};
 };
 
 /// \param positions  3 per vertex, the model's or others

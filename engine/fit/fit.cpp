@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <Eigen/Core>
+#include <fmt/format.h>
 
 #include "engine/scene/refine.h"
 #include "engine/scene/require_limit.h"
@@ -53,6 +54,8 @@ Scene RefineWithAlpha(Model const& control, double alpha, Job& job) {
     return fine;
 }
 
+constexpr double kLeft = 0.01;  // of the tolerance: how well the certificate is known
+
 /// Refinements towards a vertex that leave a hundredth of the tolerance: each brings the place
 /// evaluated nearer by 1/2, at vertices of high valence only by 0.66.
 int ChooseDepth(Scene const& mesh, double size, double tolerance) {
@@ -67,7 +70,7 @@ int ChooseDepth(Scene const& mesh, double size, double tolerance) {
             longest = std::max(longest, (point(corner + i) - point(corner + (i + 1) % n)).norm());
         corner += n;
     }
-    double const share = longest / size / (0.01 * tolerance);
+    double const share = longest / size / (kLeft * tolerance);
     return std::clamp(static_cast<int>(std::ceil(1.7 * std::log2(std::max(share, 1.0)))), 8,
                       eval::FaceTree::kLimitDepth);
 }
@@ -93,14 +96,74 @@ Certificate Certify(Scene const& mesh, Far::TopologyRefiner const& refiner,
         certificate.worstVertex = static_cast<Index>(i);
     }
     certificate.rms = std::sqrt(sum / static_cast<double>(std::max<size_t>(count, 1)));
+    certificate.isMet = certificate.max <= (1.0 + kLeft) * tolerance;
     return certificate;
+}
+
+/// Turns the result's control mesh, in double, into what the file will hold, and certifies that.
+void RoundAndCertify(Precision precision, Model const& model, FitOptions const& options, Job& job,
+                     FitResult& result) {
+    result.precision = precision;
+    auto const round = [&] {
+        if (options.target) RoundAsWritten(options.target->path, precision, result.mesh.positions);
+    };
+    auto const certify = [&](Scene const& mesh, Far::TopologyRefiner const& refiner) {
+        return Certify(mesh, refiner, model.GetPositions(), options.tolerance, job);
+    };
+    if (options.alpha == 0.0) {
+        round();
+        result.certificate = certify(result.mesh, model.GetRefiner());
+        return;
+    }
+    if (options.keepsTopology) round();
+    Scene fine = RefineWithAlpha(Model::Build(result.mesh), options.alpha, job);
+    if (!options.keepsTopology) {
+        std::swap(result.mesh, fine);
+        round();
+    }
+    Scene const& limit = options.keepsTopology ? fine : result.mesh;
+    result.certificate = certify(limit, *far_ext::CreateRefiner(limit.cage));
+}
+
+/// The same in the precision of the file. Floats that nobody has asked for give way to doubles
+/// where only these meet the tolerance.
+void Finish(Model const& model, FitOptions const& options, Job& job, FitResult& result) {
+    if (!options.target) return RoundAndCertify(Precision::Double, model, options, job, result);
+    MeshTarget const& target = *options.target;
+    Precision const precision = ChoosePrecision(target, FindExtent(result.mesh.positions), job,
+                                                std::min(options.tolerance, kMostRounded));
+    bool const mayGiveWay = precision == Precision::Float && !target.precision;
+    Scene const control = mayGiveWay ? result.mesh : Scene{};
+    RoundAndCertify(precision, model, options, job, result);
+    if (!mayGiveWay || !result.report.converged || result.certificate.isMet) return;
+
+    Certificate const inFloats = result.certificate;
+    result.mesh = control;
+    RoundAndCertify(Precision::Double, model, options, job, result);
+    job.Warn(
+        fmt::format("{}: in double, for in floats its limit misses vertex {} by {:.3g} of the "
+                    "diagonal; the tolerance is {:.2g}",
+                    target.path, inFloats.worstVertex, inFloats.max, options.tolerance));
+}
+
+/// Solves for primvars as for positions.
+void FitPrimvars(eval::Interpolator const& interpolator, eval::InterpolateOptions const& solve,
+                 FitResult& result) {
+    for (Primvar& primvar : result.mesh.primvars) {
+        std::vector<double> const data(primvar.values.begin(), primvar.values.end());
+        std::vector<double> fitted(data.size());
+        result.primvars.push_back(interpolator.Solve(data, primvar.numChannels, fitted, solve));
+        std::transform(fitted.begin(), fitted.end(), primvar.values.begin(),
+                       [](double x) { return static_cast<float>(x); });
+    }
 }
 
 }  // namespace
 
 bool FitResult::HasConverged() const {
-    return report.converged && std::all_of(primvars.begin(), primvars.end(),
-                                           [](auto const& primvar) { return primvar.converged; });
+    return report.converged && certificate.isMet &&
+           std::all_of(primvars.begin(), primvars.end(),
+                       [](auto const& primvar) { return primvar.converged; });
 }
 
 FitResult FitToLimit(Model const& model, FitOptions const& options, Job& job) {
@@ -114,27 +177,12 @@ FitResult FitToLimit(Model const& model, FitOptions const& options, Job& job) {
     FitResult result;
     result.mesh = model.MakeScene();
     result.report = interpolator.Solve(model.GetPositions(), 3, result.mesh.positions, solve);
-    for (Primvar& primvar : result.mesh.primvars) {
-        std::vector<double> const data(primvar.values.begin(), primvar.values.end());
-        std::vector<double> fitted(data.size());
-        result.primvars.push_back(interpolator.Solve(data, primvar.numChannels, fitted, solve));
-        std::transform(fitted.begin(), fitted.end(), primvar.values.begin(),
-                       [](double x) { return static_cast<float>(x); });
-    }
+    FitPrimvars(interpolator, solve, result);
     std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - start;
     result.solveSeconds = elapsed.count();
     result.lambdaMin =
         result.report.singularComponents.empty() ? interpolator.EstimateSmallestEigenvalue() : 0.0;
-
-    if (options.alpha == 0.0) {
-        result.certificate =
-            Certify(result.mesh, model.GetRefiner(), model.GetPositions(), options.tolerance, job);
-        return result;
-    }
-    Scene fine = RefineWithAlpha(Model::Build(result.mesh), options.alpha, job);
-    result.certificate = Certify(fine, *far_ext::CreateRefiner(fine.cage), model.GetPositions(),
-                                 options.tolerance, job);
-    if (!options.keepsTopology) result.mesh = std::move(fine);
+    Finish(model, options, job, result);
     return result;
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "engine/io/written_numbers.h"
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
 #include "eval/fit/interpolate.h"
@@ -15,31 +17,40 @@ struct FitOptions {
     int maxIterations = 1000;    ///< applications of A
     double alpha = 0.0;          ///< generalised Catmull-Clark in the first step; 0: plain
     bool keepsTopology = false;  ///< with alpha: the control mesh itself, before that step
+    /// The file that the mesh is for: its coordinates are rounded to what that will hold. None:
+    /// they stay doubles.
+    std::optional<MeshTarget> target{};
 };
 
-/// How far the limit surface of the result passes from the vertices that were given, over the
-/// diagonal of their bounding box. Found without A: by refining towards each vertex
+/// How far the limit surface of the result, rounded as it is, passes from the vertices that were
+/// given, over the diagonal of their bounding box. Found without A: by refining towards each vertex
 /// (eval::EvaluateVertexLimits).
 struct Certificate {
     double max = 0.0, rms = 0.0;
     Index worstVertex = -1;
+    bool isMet = false;  ///< max is within the tolerance, as far as it is known: to a hundredth
 };
 
 struct FitResult {
     Scene mesh;  ///< the control mesh; one level finer than the input with alpha, unless
                  ///< keepsTopology
-    eval::SolveReport report;                 ///< of the positions
+    Precision precision = Precision::Double;  ///< what its coordinates are rounded to
+    eval::SolveReport report;                 ///< of the positions, before
     std::vector<eval::SolveReport> primvars;  ///< of the model's primvars, in their order
     Certificate certificate;
     double lambdaMin = 0.0;  ///< smallest eigenvalue of A, estimated; 0 if a component is singular
     double solveSeconds = 0.0;
 
+    /// The solver has, and the certificate is met.
     bool HasConverged() const;
 };
 
 /// Finds the control mesh whose limit surface passes through the model's vertices, and fits its
 /// primvars the same way. Not converging is an answer; the mesh is then the best there is.
 ///
+/// Where nobody has asked for a precision, it is that with which the file keeps the tolerance.
+///
+/// \param job     told of a precision that was not asked for, or loses too much
 /// \throws Error        BadMesh: a coordinate that is no number.  BadOption: alpha outside [0, 1]
 ///                      or with a scheme that has none
 /// \throws Stopped

@@ -276,8 +276,9 @@ std::vector<std::string> WriteMesh(std::string const& path, Scene const& scene,
     return leftOut;
 }
 
-std::vector<std::string> MeshSequence::Add(std::string const& path, Scene const& scene) {
-    auto [bytes, leftOut] = FormatMesh(path, scene, _precision);
+std::vector<std::string> MeshSequence::Add(std::string const& path, Scene const& scene,
+                                           Precision precision) {
+    auto [bytes, leftOut] = FormatMesh(path, scene, precision);
     Add(path, bytes);
     return leftOut;
 }

@@ -37,10 +37,8 @@ std::vector<std::string> WriteMesh(std::string const& path, Scene const& scene,
 /// Several meshes, and files beside them, that appear together or not at all.
 class MeshSequence {
 public:
-    explicit MeshSequence(Precision precision) : _precision(precision) {}
-
     /// Writes a mesh under a temporary name. As WriteMesh
-    std::vector<std::string> Add(std::string const& path, Scene const& scene);
+    std::vector<std::string> Add(std::string const& path, Scene const& scene, Precision precision);
 
     /// Writes another file under a temporary name. \throws Error Io
     void Add(std::string const& path, std::string const& bytes);
@@ -52,7 +50,6 @@ public:
     void Commit() { CommitTogether(_files); }
 
 private:
-    Precision _precision;
     std::vector<std::unique_ptr<AtomicFile>> _files;
 };
 

@@ -2,6 +2,7 @@
 #include "engine/smooth/smooth.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -37,6 +38,12 @@ double FindUnit(std::vector<double> const& positions) {
     for (size_t i = 3; i < positions.size(); ++i)
         size = std::max(size, std::abs(positions[i] - positions[i % 3]));
     return size > 0.0 && std::isfinite(size) ? std::exp2(std::ilogb(size)) : 1.0;
+}
+
+/// Positions as the cascade takes them, which may be in float.
+std::vector<double> ToCascade(std::vector<double> const& positions,
+                              std::array<double, 3> const& origin, double unit) {
+    return Times(1.0 / unit, Subtract(positions, origin));
 }
 
 /// Values of the coarser mesh' vertices, each finer one taking its first parent's.
@@ -82,7 +89,8 @@ public:
           _start(model.GetPositions()),
           _levels(model, options.levels, options.refinement, options.keepsCreases),
           _unit(FindUnit(model.GetPositions())),
-          _cascade(Times(1.0 / _unit, model.GetPositions()),
+          _origin(FindFloatOrigin(FindExtent(model.GetPositions()))),
+          _cascade(ToCascade(model.GetPositions(), _origin, _unit),
                    Times(1.0 / _unit, widths.GetStart(model)), MakeCascadeOptions()) {}
 
     /// \return without a mesh where a component collapsed
@@ -101,7 +109,7 @@ public:
             isDone = !_report.hasCollapsed || _options.onCollapse == OnCollapse::KeepResult;
         }
         _job.Finish();
-        return {isDone ? std::optional(MakeScene()) : std::nullopt, std::move(_report)};
+        return {isDone ? std::optional(MakeRoundedScene()) : std::nullopt, std::move(_report)};
     }
 
 private:
@@ -120,9 +128,28 @@ private:
 
     bool IsGraph() const { return _options.constraint == SmoothConstraint::Graph; }
 
+    /// With the coordinates that its file will hold.
+    Scene MakeRoundedScene() {
+        Scene scene = MakeScene();
+        if (!_options.target) return scene;
+        _report.precision = FindPrecision(*_options.target, FindExtent(scene.positions));
+        RoundAsWritten(_options.target->path, _report.precision, scene.positions);
+        if (_report.volumes.empty()) return scene;
+        auto const volumes =
+            eval::MeasureVolumes(_levels.GetMesh(), _ofVertex, _components.count, scene.positions);
+        auto entry = _report.volumes.begin();
+        for (size_t component = 0; component < volumes.size(); ++component) {
+            if (_components.isClosed[component]) (entry++)->end = volumes[component];
+        }
+        return scene;
+    }
+
     Scene MakeScene() {
         Scene fine = _levels.MakeScene(_job);
         fine.positions = Times(_unit, _cascade.GetPositions());
+        for (size_t i = 0; i < fine.positions.size(); ++i) {
+            if (_origin[i % 3] != 0.0) fine.positions[i] += _origin[i % 3];  // -0 stays
+        }
         auto const widths = Times(_unit, _cascade.GetWidths());
         std::erase_if(fine.primvars,
                       [](Primvar const& primvar) { return primvar.name == "width"; });
@@ -237,7 +264,8 @@ private:
     std::vector<int> _ofVertex;
     std::vector<double> _start;  // the start surface on the present level
     SmoothLevels _levels;
-    double _unit;  // of the cascade's lengths
+    double _unit;                   // of the cascade's lengths
+    std::array<double, 3> _origin;  // what its positions are relative to
     CascadeLevel _rows;
     eval::Cascade<Scalar> _cascade;
     int _level = 0;
@@ -276,8 +304,9 @@ double MeasureCriticalFactor(Model const& model, ScaledWidths const& widths,
         auto given = widths.SampleLevel(levels, start);
         if (!given.empty()) scaled.atLevels.push_back(Times(1.0 / unit, std::move(given)));
     }
-    return eval::FindCriticalFactor(rows, Times(1.0 / unit, model.GetPositions()), scaled, ofVertex,
-                                    components.isClosed, [&] { job.CheckStopped(); });
+    auto const origin = FindFloatOrigin(FindExtent(model.GetPositions()));
+    return eval::FindCriticalFactor(rows, ToCascade(model.GetPositions(), origin, unit), scaled,
+                                    ofVertex, components.isClosed, [&] { job.CheckStopped(); });
 }
 
 SmoothResult RunOnce(Model const& model, ScaledWidths const& widths, SmoothOptions const& options,
@@ -352,6 +381,8 @@ SmoothResult Smooth(Model const& model, FilterWidths const& widths, SmoothOption
     SmoothResult result =
         WatchCollapse(model, widths, options, job,
                       RunOnce(model, ScaledWidths(widths, 1.0), options, false, job));
+    if (result.mesh && options.target)
+        WarnOfPrecision(*options.target, FindExtent(result.mesh->positions), job);
     for (SmoothVolume const& volume : result.report.volumes) {
         if (volume.isMet) continue;
         job.Warn(fmt::format(

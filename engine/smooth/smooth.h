@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/io/written_numbers.h"
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
 #include "engine/smooth/smooth_levels.h"
@@ -54,6 +55,9 @@ struct SmoothOptions {
     OnCollapse onCollapse = OnCollapse::Stop;
     bool keepsCreases = false;
     Precision precision = Precision::Double;  ///< of Jacobi sweeps
+    /// The file that the mesh is for: its coordinates are rounded to what that will hold. None:
+    /// they stay doubles.
+    std::optional<MeshTarget> target{};
 };
 
 /// The closed component that shrank most.
@@ -66,15 +70,16 @@ struct SmoothShrinkage {
 /// A volume that was to be preserved.
 struct SmoothVolume {
     Index firstVertex = 0;
-    double start = 0.0, end = 0.0;
-    bool isMet = false;
+    double start = 0.0, end = 0.0;  ///< of the mesh as it is returned
+    bool isMet = false;             ///< before it was rounded
 };
 
 struct SmoothReport {
     std::vector<eval::CascadeStepReport> levels;
-    double meanEdge = 0.0;            ///< of the control mesh
-    double largestWidth = 0.0;        ///< as used
-    std::optional<double> limitedBy;  ///< factor on all widths that LimitWidth applied
+    Precision precision = Precision::Double;  ///< what the mesh's coordinates are rounded to
+    double meanEdge = 0.0;                    ///< of the control mesh
+    double largestWidth = 0.0;                ///< as used
+    std::optional<double> limitedBy;          ///< factor on all widths that LimitWidth applied
     std::optional<SmoothShrinkage> shrinkage;
     std::optional<double> criticalFactor;  ///< measured: the largest factor, at most 1, on the
                                            ///< widths asked for that the closed components carry
@@ -108,7 +113,7 @@ struct SmoothResult {
 ///
 /// \param model   of the scheme Loop where triangles are to stay triangles
 /// \param job     told of progress, and of a metric that was frozen, sharp corners, volumes that
-///                could not be kept
+///                could not be kept, a precision that was not asked for or loses too much
 /// \throws Error  BadMesh: not manifold or oriented two ways; a width above 1e6 of the mesh's size;
 ///                for graphs, faces that overlap in the plane.  BadOption: a width that is no
 ///                number from 0 up, a residual for Jacobi sweeps, widths for another number of

@@ -12,10 +12,11 @@ int main(int argc, char** argv) {
     engine::Model const model = engine::Model::Build(engine::ReadMesh(argv[1]));
 
     engine::Job job;
-    engine::FitResult const fit = engine::FitToLimit(model, {.tolerance = 1e-9}, job);
+    engine::FitOptions const options{.tolerance = 1e-9, .target = engine::MeshTarget{argv[2]}};
+    engine::FitResult const fit = engine::FitToLimit(model, options, job);
     if (!fit.HasConverged()) return std::puts("no limit surface passes through all vertices"), 4;
 
-    engine::WriteMesh(argv[2], fit.mesh, limn::Precision::Double);
+    engine::WriteMesh(argv[2], fit.mesh, fit.precision);
     std::printf("%s: residual %.1e after %d steps\n", GetName(fit.report.method),
                 fit.report.residual, fit.report.iterations);
     std::printf("the limit misses no vertex by more than %.1e of the mesh's size\n",

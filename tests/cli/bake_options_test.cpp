@@ -55,6 +55,12 @@ std::vector<Row> const kRows{
     {"--encode", {"--encode", "2,0.5"}},
     {"--against", {"--maps", "displacement", "--against", "MESH"}, kDisplacement},
     {"--rest", {"--maps", "tension", "--rest", "MESH"}, {"--maps", "tension", "--rest", "MOVED"}},
+    {"--origin", {"--maps", "position", "--origin", "1,-2.5,1e3"}, {"--maps", "position"}},
+    {"--origin",
+     {"--maps", "position", "--origin", "auto"},
+     {"--maps", "position"},
+     "plain",
+     Effect::None},  // of a mesh round the origin
     {"--bands", kBands + Words{"--bands", "2"}, kBands},
     {"--vector", kBands + Words{"--vector"}, kBands},
     {"--vector", kDisplacement + Words{"--vector"}, kDisplacement},

@@ -8,6 +8,7 @@
 
 #include "engine/bake/maps/map_table.h"
 #include "engine/bake/maps/vector_frame.h"
+#include "engine/scene/extent.h"
 #include "engine/scene/same_faces.h"
 #include "engine/scene/subdivision_names.h"
 #include "eval/surface/finer_surface.h"
@@ -23,9 +24,10 @@ public:
         : Map(std::move(traits)), _other(*options.against), _frame(options) {}
 
     void Prepare(BakedSurface const& baked, Job&) override {
+        _positions = Subtract(_other.GetPositions(), baked.floatOrigin);
         if (HaveSameFaces(baked.model.GetCage(), _other.GetCage())) return;
         _finer = eval::FinerSurface::Build(baked.surface, baked.model.GetCage(), _other.GetCage(),
-                                           _other.GetPositions());
+                                           _positions);
         if (_finer) return;
         throw Error(ErrorCode::BadMesh,
                     fmt::format("{}: its faces differ from those of '{}'; `against` needs the same "
@@ -37,7 +39,7 @@ public:
 
     std::vector<eval::FaceTree::Values> GetValues() const override {
         if (_finer) return {};
-        return {{_other.GetPositions(), 3}};
+        return {{_positions, 3}};
     }
 
     std::unique_ptr<MapSampler> MakeSampler() const override {
@@ -75,6 +77,7 @@ private:
 
     Model _other;
     VectorFrame _frame;
+    std::vector<double> _positions;  // the other mesh's, relative to the same origin as samples
     std::optional<eval::FinerSurface> _finer;  // where the other mesh's faces are refined ones
 };
 

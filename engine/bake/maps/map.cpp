@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/maps/map.h"
 
+#include <fmt/format.h>
+
 namespace limn::engine {
 
 namespace {
@@ -30,6 +32,11 @@ private:
 };
 
 }  // namespace
+
+std::string MapTraits::GetOriginText() const {
+    if (!origin || *origin == std::array<double, 3>{}) return {};
+    return fmt::format("{},{},{}", (*origin)[0], (*origin)[1], (*origin)[2]);
+}
 
 std::vector<ChannelGroup> MapTraits::GetGroups() const {
     if (groups.empty()) return {{0, GetNumChannels(), Averaging::Plain}};

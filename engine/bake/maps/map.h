@@ -51,15 +51,18 @@ struct MapTraits {
     bool needsJacobian = false;                          ///< d(u,v)/d(s,t) at its samples
     bool needsFaceCounts = false;  ///< nothing of it, but how many faces lie over a texel's centre
 
-    bool isPlace = false;              ///< told by its distance to the origin
-    bool isSameAcrossCreases = false;  ///< along infinitely sharp edges both sides agree
-    bool isComparableAtSeams = true;   ///< along texture seams both sides agree
+    bool isPlace = false;                         ///< told by its distance to the origin
+    std::optional<std::array<double, 3>> origin;  ///< taken off, where that was asked for
+    bool isSameAcrossCreases = false;             ///< along infinitely sharp edges both sides agree
+    bool isComparableAtSeams = true;              ///< along texture seams both sides agree
 
     std::string optionText;              ///< its own options that affect pixels: "bands=4"
     std::optional<std::string> against;  ///< SHA-256 of the mesh that it leads to
     bool hasVectorOptions = false;       ///< isVector and space affect it, too
 
     int GetNumChannels() const { return static_cast<int>(channels.size()); }
+    /// "X,Y,Z"; empty where no origin, or 0, is taken off.
+    std::string GetOriginText() const;
     /// The groups, or the one that all channels are in.
     std::vector<ChannelGroup> GetGroups() const;
 };
@@ -71,6 +74,8 @@ struct BakedSurface {
     eval::LimitSurface const& uvSurface;
     std::vector<char> const& isBaked;  ///< per face
     int width, height;                 ///< texels of a tile
+    /// What positions among samples are relative to, 0 where floats hold them as they are.
+    std::array<double, 3> floatOrigin{};
 };
 
 /// Samples of one domain of a face: the texels it covers.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "engine/images/colour_ramp.h"
@@ -19,11 +21,16 @@ struct Encoding {
     double scale = 1.0, offset = 0.0;
 };
 
+/// FindOrigin's, of the mesh that is baked.
+struct AutomaticOrigin {};
+using Origin = std::variant<AutomaticOrigin, std::array<double, 3>>;
+
 /// Which maps, and what they are made of: each takes what concerns it.
 struct MapOptions {
     std::vector<std::string> maps;             ///< names, as ListMapNames has them
     std::optional<Model> against;              ///< of the map displacement: the mesh it leads to
     std::optional<Model> rest;                 ///< of the map tension: the mesh before it was posed
+    std::optional<Origin> origin;              ///< of the map position: taken off it
     std::optional<std::vector<double>> field;  ///< of the map field: a 1-form on the mesh's edges
     NoiseOptions noise;                        ///< of the map noise
     std::optional<ColourRamp> noiseRamp;       ///< noise as colours

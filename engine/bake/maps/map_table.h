@@ -36,6 +36,7 @@ std::string ListMapNames();
 // One maker per file of this folder.
 std::unique_ptr<Map> MakeCurvatureMap(std::string const&, MapOptions const&, Model const&);
 std::unique_ptr<Map> MakeVectorMap(std::string const&, MapOptions const&, Model const&);
+std::unique_ptr<Map> MakePositionMap(std::string const&, MapOptions const&, Model const&);
 std::unique_ptr<Map> MakeDisplacementMap(std::string const&, MapOptions const&, Model const&);
 std::unique_ptr<Map> MakeStretchMap(std::string const&, MapOptions const&, Model const&);
 std::unique_ptr<Map> MakeBandsMap(std::string const&, MapOptions const&, Model const&);

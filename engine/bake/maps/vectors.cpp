@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Position, normal and principal direction of the limit surface, in object space.
+// Normal and principal direction of the limit surface, in object space.
 
 #include "engine/bake/maps/map_table.h"
 
@@ -8,13 +8,6 @@ namespace limn::engine {
 
 std::unique_ptr<Map> MakeVectorMap(std::string const& name, MapOptions const&, Model const&) {
     MapTraits traits{.name = name, .channels = {"R", "G", "B"}, .units = "unit vector"};
-    if (name == "position") {
-        traits.units = "length";
-        traits.range = RangeKind::Vector;
-        traits.isPlace = true;
-        traits.isSameAcrossCreases = true;
-        return MakePointwiseMap(std::move(traits), CopyVector<eval::kPositionX>);
-    }
     if (name == "normal") {
         traits.range = RangeKind::UnitVector;
         traits.groups = {{0, 3, Averaging::UnitVector}};

@@ -193,22 +193,38 @@ TEST(BakeWarnings, AFewPartsOfAHundredMayBeLeftOut) {
     }
 }
 
-// -------- half precision
+// -------- positions far from the origin
 
-TEST(BakeWarnings, PositionsFarFromTheOriginAreTooCoarseInHalf) {
-    auto const far = [](double distance) {
-        Scene scene = test::MakeTorus(6, 4);
-        for (double& x : scene.positions) x += distance;
-        return scene;
-    };
+Scene MakeTorusAt(double distance) {
+    Scene scene = test::MakeTorus(6, 4);
+    for (double& x : scene.positions) x += distance;
+    return scene;
+}
+
+TEST(BakeWarnings, PositionsFarFromTheOriginAreTooCoarse) {
     auto options = MakeOptions({"position", "normal"});
-    EXPECT_EQ(WarningsOf(far(1000.0), options), Words{});
+    EXPECT_EQ(WarningsOf(MakeTorusAt(10.0), options), Words{});
+    std::string const warning = WarningOf(MakeTorusAt(1000.0), options);
+    EXPECT_TRUE(Contains(warning, "positions of single precision are 6.10352e-05 apart"))
+        << warning;
+    EXPECT_FALSE(Contains(warning, "halfMaps")) << warning;
+    options.origin = engine::AutomaticOrigin{};
+    EXPECT_EQ(WarningsOf(MakeTorusAt(1000.0), options), Words{});
+    EXPECT_EQ(WarningsOf(MakeTorusAt(1000.0), MakeOptions({"normal"})), Words{});
+}
+
+TEST(BakeWarnings, PositionsInHalfAreTooCoarseEarlier) {
+    auto options = MakeOptions({"position", "normal"});
     options.isHalf = true;
-    EXPECT_EQ(WarningsOf(far(0.0), options), Words{});
-    std::string const warning = WarningOf(far(1000.0), options);
-    EXPECT_TRUE(Contains(warning, "positions of half precision are 0.5 apart")) << warning;
+    EXPECT_EQ(WarningsOf(MakeTorusAt(0.0), options), Words{});
+    std::string const warning = WarningOf(MakeTorusAt(100.0), options);
+    EXPECT_TRUE(Contains(warning, "positions of half precision are 0.0625 apart")) << warning;
+    EXPECT_TRUE(Contains(warning, "name the other maps by `halfMaps`")) << warning;
+    options.origin = engine::AutomaticOrigin{};
+    EXPECT_EQ(WarningsOf(MakeTorusAt(100.0), options), Words{});
+    options.origin.reset();
     options.halfMaps = {"normal"};
-    EXPECT_EQ(WarningsOf(far(1000.0), options), Words{});
+    EXPECT_EQ(WarningsOf(MakeTorusAt(10.0), options), Words{});
 }
 
 // -------- faces without texture coordinates

@@ -5,8 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/io/mesh_reader.h"
+#include "engine/io/mesh_writer.h"
 #include "eval/surface/vertex_limits.h"
 #include "far_ext/topology/refiner.h"
+#include "support/files.h"
 #include "support/fit_meshes.h"
 #include "support/listener.h"
 #include "support/meshes.h"
@@ -61,6 +64,64 @@ TEST(Fit, TheLimitPassesThroughTheVertices) {
         EXPECT_LE(result.certificate.rms, result.certificate.max);
         EXPECT_EQ(result.mesh.cage.faceVertices, scene.cage.faceVertices);
     }
+}
+
+// The whole miss belongs to the certificate: the solver's, and that of rounding to what the file
+// holds, which may be neither the doubles nor the floats.
+TEST(Fit, TheCertificateIsOfTheFile) {
+    test::TemporaryFolder const folder;
+    for (double distance : {0.0, 1e3, 1e6}) {
+        engine::Scene data = test::MakeTorus(9, 7);
+        for (double& x : data.positions) x += distance;
+        for (std::string const name : {"a.obj", "a.ply"}) {
+            for (auto precision : {std::optional<Precision>(), std::optional(Precision::Float)}) {
+                auto const fit = FitToLimit(data, {.target = {{folder / name, precision}}});
+                engine::WriteMesh(folder / name, fit.mesh, fit.precision);
+                engine::Scene const written = engine::ReadMesh(folder / name);
+                EXPECT_EQ(written.positions, fit.mesh.positions);
+                double const miss = FindMiss(written, data.positions);
+                EXPECT_LE(miss, fit.certificate.max + 1e-9);
+                EXPECT_GE(miss, 0.5 * fit.certificate.max);
+                EXPECT_EQ(fit.HasConverged(), precision == std::nullopt || distance == 0.0);
+                EXPECT_EQ(fit.precision, precision == std::nullopt && distance > 0.0
+                                             ? Precision::Double
+                                             : Precision::Float);
+            }
+        }
+    }
+}
+
+TEST(Fit, WithoutATargetNothingIsRounded) {
+    engine::Scene data = test::MakeTorus(9, 7);
+    auto const fit = FitToLimit(data, {});
+    EXPECT_EQ(fit.precision, Precision::Double);
+    EXPECT_NE(static_cast<float>(fit.mesh.positions[0]), fit.mesh.positions[0]);
+    EXPECT_NEAR(fit.certificate.max, fit.report.residual, 1e-12);
+}
+
+// A solver that stops just within the tolerance leaves no room for rounding.
+TEST(Fit, FloatsGiveWayWhereOnlyDoublesMeetTheTolerance) {
+    engine::Scene const data = test::MakeTorus(9, 7);
+    double const residual = FitToLimit(data, {.tolerance = 3e-7}).report.residual;
+    test::Listener listener;
+    engine::Job job(listener.MakeHost());
+    auto const model = engine::Model::Build(data);
+    engine::FitOptions options{.tolerance = 1.0001 * residual, .target = {{"a.obj"}}};
+    auto const fit = engine::FitToLimit(model, options, job);
+    EXPECT_TRUE(fit.HasConverged());
+    EXPECT_EQ(fit.precision, Precision::Double);
+    ASSERT_EQ(listener.warnings.size(), 1u);
+    EXPECT_TRUE(
+        listener.warnings[0].starts_with("a.obj: in double, for in floats its limit misses"))
+        << listener.warnings[0];
+
+    options.target->precision = Precision::Float;
+    auto const inFloats = engine::FitToLimit(model, options, job);
+    EXPECT_FALSE(inFloats.HasConverged());
+    EXPECT_TRUE(inFloats.report.converged);
+    options.target->precision.reset();
+    options.tolerance = 2.0 * residual;
+    EXPECT_EQ(engine::FitToLimit(model, options, job).precision, Precision::Float);
 }
 
 TEST(Fit, FindsTheControlMeshThatMadeTheData) {
