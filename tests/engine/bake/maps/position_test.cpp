@@ -112,7 +112,7 @@ TEST(PositionMap, AnOriginThatIsZeroLeavesNoTrace) {
     options.maps = {"position"};
     auto const describe = [&] {
         auto const files = engine::LayOutFiles(engine::MakeMaps(options, torus), "{map}", false);
-        return engine::MakeAttributes(options, files.at(0), torus);
+        return engine::MakeAttributes(options, files.at(0), torus, 1001);
     };
     auto const before = describe();
     options.origin = engine::AutomaticOrigin{};
@@ -126,7 +126,7 @@ TEST(PositionMap, AnOriginStandsInTheHeaderOfPositionsOnly) {
     options.origin = Point{0.1, 5411932, -3};
     auto const files = engine::LayOutFiles(engine::MakeMaps(options, torus), "{map}", false);
     auto const find = [&](engine::FileLayout const& file, std::string const& key) {
-        for (auto const& [name, value] : engine::MakeAttributes(options, file, torus)) {
+        for (auto const& [name, value] : engine::MakeAttributes(options, file, torus, 1001)) {
             if (name == key) return value;
         }
         return std::string();
