@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
-#include "engine/cli/word_option.h"
+#include "engine/cli/options/word_option.h"
 #include "engine/evaluate/evaluate.h"
 #include "engine/evaluate/frames.h"
 #include "engine/evaluate/place_table.h"
@@ -37,6 +37,7 @@ int Run(EvalArguments const& a, Context& context) {
     CommonOptions const& common = context.GetCommon();
     context.KeepStdoutForData(a.output.empty());
     auto const model = context.Load(a.mesh);
+    context.GetJob().Start("reading " + a.places);
     auto const places = engine::ReadPlaces(a.places);
     context.GetReport()["places"] = places.faces.size();
     if (!a.frames.empty()) {
@@ -48,6 +49,7 @@ int Run(EvalArguments const& a, Context& context) {
                                      context.GetJob());
     });
     context.GetReport()["places_without_limit"] = values.CountWithoutLimit();
+    context.GetJob().Start("writing " + (a.output.empty() ? "stdout" : a.output));
     std::string const text = engine::FormatValues(places.GetPlaces(), values, common.precision);
     if (a.output.empty())
         PrintData(text);

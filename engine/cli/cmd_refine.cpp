@@ -7,7 +7,8 @@
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
 #include "engine/cli/option_rules.h"
-#include "engine/cli/word_option.h"
+#include "engine/cli/options/number_option.h"
+#include "engine/cli/options/word_option.h"
 #include "engine/differential/curves.h"
 #include "engine/differential/differential.h"
 #include "engine/differential/edit_reader.h"
@@ -41,8 +42,9 @@ engine::Model ApplyRule(RefineArguments const& a, CommonOptions const& common,
                         engine::Model const& model) {
     if (!a.rule) return model;
     if (common.scheme && a.rule->scheme != model.GetCage().scheme) {
-        throw Error(ErrorCode::BadOption, fmt::format("--rule {} contradicts --scheme {}",
-                                                      kRuleWords.GetWord(*a.rule), *common.scheme));
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("--rule {} contradicts --scheme {}", kRuleWords.GetWord(*a.rule),
+                                engine::kSchemeWords.GetWord(*common.scheme)));
     }
     return WithScheme(model, a.rule->scheme);
 }
@@ -102,6 +104,7 @@ int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& contex
     RefuseEach(verb, {"--limit", "--weld"}, kWhy);
     auto const rule = GetRule(a) == SubdivisionRule::Butterfly ? eval::CurveRule::FourPoint
                                                                : eval::CurveRule::CubicBSpline;
+    context.GetJob().Start("reading " + a.mesh);
     auto const [curves, sha256] = engine::ReadPolylines(a.mesh);
     auto const start = std::chrono::steady_clock::now();
     auto const [fine, worst] =
@@ -109,6 +112,7 @@ int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& contex
     std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - start;
     size_t numPoints = 0;
     for (eval::Curve const& curve : fine) numPoints += curve.points.size();
+    context.GetJob().Start("writing " + a.output);
     engine::WritePolylines(a.output, fine, context.GetCommon().precision);
     auto const report = context.GetReport();
     report["inputs"].push_back({{"path", a.mesh}, {"sha256", sha256}, {"curves", curves.size()}});
@@ -136,8 +140,10 @@ int RunRefine(RefineArguments const& a, CLI::App const& verb, Context& context) 
             model, {.levels = a.levels, .toLimit = a.toLimit, .rule = GetRule(a)},
             context.GetJob());
     }
-    if (isDone || a.keepsResult)
+    if (isDone || a.keepsResult) {
+        context.GetJob().Start("writing " + a.output);
         context.Warn(engine::WriteMesh(a.output, fine, context.GetCommon().precision));
+    }
     context.GetReport()["vertices"] = fine.cage.numVertices;
     context.GetReport()["faces"] = fine.cage.GetNumFaces();
     return isDone ? kDone : kNotReached;
@@ -150,7 +156,7 @@ Verb AddRefine(CLI::App& app) {
     CLI::App* const verb = app.add_subcommand("refine", "Subdivide a mesh");
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();
     verb->add_option("-o,--output", a->output, "mesh to write, .obj or .ply")->required();
-    verb->add_option("--levels", a->levels, "how often (default 1)")->check(CLI::Range(0, 10));
+    AddNumberOption(*verb, "--levels", a->levels, "how often (default 1)", {0, 10});
     AddWordOption(*verb, "--space", a->isDifferential, kIsDifferentialWords,
                   "spatial (default): rules on positions; differential: on mean-curvature normals");
     AddWordOption(*verb, "--rule", a->rule, kRuleWords,
@@ -164,15 +170,14 @@ Verb AddRefine(CLI::App& app) {
     };
     differential(AddWordOption(*verb, "--laplacian", a->options.laplacian, kLaplacianWords,
                                "combinatorial (default), cotangent or mesh"));
-    differential(verb->add_option("--dirmag", a->options.dirMagLevels,
-                                  "first levels done by direction and magnitude (default 0)"))
-        ->check(CLI::Range(0, 10));
-    differential(verb->add_option("--spatial-first", a->options.spatialLevels,
-                                  "levels done in space before (default 0)"))
-        ->check(CLI::Range(0, 10));
+    differential(AddNumberOption(*verb, "--dirmag", a->options.dirMagLevels,
+                                 "first levels done by direction and magnitude (default 0)",
+                                 {0, 10}));
+    differential(AddNumberOption(*verb, "--spatial-first", a->options.spatialLevels,
+                                 "levels done in space before (default 0)", {0, 10}));
     differential(
-        verb->add_option("--handle", a->options.handles,
-                         "vertex that stays: one per component or boundary loop (repeatable)"));
+        AddNumberOption(*verb, "--handle", a->options.handles,
+                        "vertex that stays: one per component or boundary loop (repeatable)"));
     differential(AddWordOption(*verb, "--solver", a->options.solver, kDifferentialSolverWords,
                                "multigrid (default) or cholesky"));
     differential(
