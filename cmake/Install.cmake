@@ -17,3 +17,19 @@ install(FILES ${PROJECT_BINARY_DIR}/limnConfig.cmake ${PROJECT_BINARY_DIR}/limnC
     ${PROJECT_SOURCE_DIR}/cmake/FindOpenSubdiv.cmake ${PROJECT_SOURCE_DIR}/cmake/FindLibDeflate.cmake
     ${PROJECT_SOURCE_DIR}/cmake/FindMETIS.cmake
     DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/limn)
+
+# What people look for: manual page, completion for shells, licence and docs.
+set(limn_words ${PROJECT_BINARY_DIR}/words)
+install(FILES ${limn_words}/limn.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${limn_words}/limn.bash RENAME limn
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES ${limn_words}/limn.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+# Debian's zsh looks for what packages bring in another folder than for what users install.
+if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
+    install(FILES ${limn_words}/_limn DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+else()
+    install(FILES ${limn_words}/_limn DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+endif()
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md
+    ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR})

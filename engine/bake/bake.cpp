@@ -33,9 +33,11 @@ BakeReport BakeTo(BakeDestination& destination, std::string const& pattern, Mode
                   BakeOptions const& options, Job& job) {
     RequireLimit(model);
     CheckPattern(pattern, options);
+    job.Start("preparing maps");
     auto const maps = MakeMaps(options, model);
     BakeReport report;
     report.files = LayOutFiles(maps, pattern, options.hasCoverage);
+    job.Start("finding tiles");
     TexturedFaces const faces(model, options.groups, job);
     auto const tiles = FindBakedTiles(faces, model, options, HasUdimToken(pattern), job);
     for (int tile : tiles) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include <fmt/format.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
@@ -58,6 +59,7 @@ private:
 };
 
 void TileJob::Run() {
+    _job.Note(fmt::format("tile {}: {} x {} texels", _tile, _options.width, _options.height));
     TileGrid const grid = TileGrid::OfTile(_tile, _options.width, _options.height);
     FaceBins const bins(_baker.GetFaces().bounds, _baker.GetFaces().isBaked, grid, Strip::kRows,
                         Strip::kBlockColumns);
@@ -132,6 +134,7 @@ void TileJob::Finish(BakeReport& report) {
             if (!_isAnyCovered) continue;
             report.clamped += _sinks[f]->Commit(_outputs[f]);
         }
+        _job.Note(_outputs[f].path + (_sinks[f] ? ": done" : ": up to date"));
         report.outputs.push_back(_outputs[f]);
         if (_options.onOutput) _options.onOutput(_outputs[f]);
         wasMade = true;

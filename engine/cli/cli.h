@@ -22,7 +22,12 @@ namespace limn::cli {
 
 /// Options every verb shares.
 struct CommonOptions {
-    std::optional<std::string> scheme, boundary, fvar, creases, triangles;
+    // Without a value as the file says.
+    std::optional<Sdc::SchemeType> scheme;
+    std::optional<Sdc::Options::VtxBoundaryInterpolation> boundary;
+    std::optional<Sdc::Options::FVarLinearInterpolation> fvar;
+    std::optional<Sdc::Options::CreasingMethod> creases;
+    std::optional<Sdc::Options::TriangleSubdivision> triangles;
     std::string reportPath;
     std::optional<double> weld;  ///< the tolerance
     Orientation orientation = Orientation::Right;
@@ -81,7 +86,9 @@ public:
 
     /// Writes the report where it was asked for, with the keys that all reports have.
     void WriteReport(RunEnd const& end) {
-        if (_report.IsWanted()) _report.Write(Conclude(end));
+        if (!_report.IsWanted()) return;
+        _job.Start("writing the report");
+        _report.Write(Conclude(end));
     }
 
     /// Writes the report from another thread than the run's, which is to be given up. The process

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <optional>
 #include <sstream>
@@ -18,8 +17,9 @@
 #include "engine/cli/names.h"
 #include "engine/cli/option_names.h"
 #include "engine/cli/option_rules.h"
-#include "engine/cli/parse_number.h"
-#include "engine/cli/word_option.h"
+#include "engine/cli/options/choices.h"
+#include "engine/cli/options/number_option.h"
+#include "engine/cli/options/word_option.h"
 #include "engine/images/exr_names.h"
 #include "engine/io/edge_values.h"
 #include "far_ext/error.h"
@@ -32,44 +32,24 @@ constexpr char const* kAllMaps = "all";
 
 struct BakeArguments {
     std::vector<std::string> meshes, tiles, seamBounds;
-    std::string size = "2048", compression = "zip", against, rest, fieldPath, encode, noiseRamp,
-                previewRange, half;
+    std::string size = "2048", against, rest, fieldPath, encode, noiseRamp, previewRange, half;
     std::optional<std::string> origin;
     bool hasAudit = false;
     engine::AuditBounds bounds;
     engine::BakeOptions options;
 };
 
-int ParseInteger(std::string const& option, std::string_view text, int low, int high) {
-    int value = 0;
-    auto const [stop, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (code != std::errc() || stop != text.data() + text.size() || value < low || value > high) {
-        throw Error(
-            ErrorCode::BadOption,
-            fmt::format("{}: '{}' is not a whole number from {} to {}", option, text, low, high));
-    }
-    return value;
-}
-
-/// "2048" or "4096x2048".
-void ParseSize(std::string const& text, engine::BakeOptions& options) {
-    size_t const x = text.find('x');
-    options.width = ParseInteger("--size", std::string_view(text).substr(0, x), 1, 65536);
-    options.height = x == std::string::npos
-                         ? options.width
-                         : ParseInteger("--size", std::string_view(text).substr(x + 1), 1, 65536);
-}
-
 /// "1001" or "1003-1005".
 void ParseTiles(std::vector<std::string> const& texts, engine::BakeOptions& options) {
     for (std::string const& text : texts) {
         size_t const dash = text.find('-');
-        int const first =
-            ParseInteger("--tiles", std::string_view(text).substr(0, dash), 1001, 9999);
-        int const last =
-            dash == std::string::npos
-                ? first
-                : ParseInteger("--tiles", std::string_view(text).substr(dash + 1), first, 9999);
+        auto const parse = [](std::string_view part, int low) {
+            return ParseNumber<int>("--tiles", part, {low, 9999});
+        };
+        int const first = parse(std::string_view(text).substr(0, dash), 1001);
+        int const last = dash == std::string::npos
+                             ? first
+                             : parse(std::string_view(text).substr(dash + 1), first);
         for (int tile = first; tile <= last; ++tile) options.tiles.push_back(tile);
     }
 }
@@ -80,8 +60,8 @@ engine::Encoding ParseEncoding(std::string const& text) {
     if (comma == std::string::npos) {
         throw Error(ErrorCode::BadOption, "--encode: scale,offset is needed, e.g. 0.5,0.5");
     }
-    return {ParseNumber("--encode", std::string_view(text).substr(0, comma)),
-            ParseNumber("--encode", std::string_view(text).substr(comma + 1))};
+    return {ParseNumber<double>("--encode", std::string_view(text).substr(0, comma)),
+            ParseNumber<double>("--encode", std::string_view(text).substr(comma + 1))};
 }
 
 /// "auto", or "X,Y,Z".
@@ -92,7 +72,7 @@ engine::Origin ParseOrigin(std::string const& text) {
     std::string word;
     size_t count = 0;
     for (; std::getline(words, word, ','); ++count) {
-        if (count < point.size()) point[count] = ParseNumber("--origin", word);
+        if (count < point.size()) point[count] = ParseNumber<double>("--origin", word);
     }
     if (count != point.size() || text.ends_with(',')) {
         throw Error(ErrorCode::BadOption,
@@ -120,7 +100,8 @@ engine::AuditBounds ParseBounds(BakeArguments const& a) {
     engine::AuditBounds bounds = a.bounds;
     for (std::string const& text : a.seamBounds) {
         size_t const equals = text.rfind('=');
-        double const bound = ParseNumber("--seam-bound", std::string_view(text).substr(equals + 1));
+        double const bound =
+            ParseNumber<double>("--seam-bound", std::string_view(text).substr(equals + 1));
         if (equals == std::string::npos)
             bounds.seam = bound;
         else
@@ -174,9 +155,10 @@ engine::BakeOptions MakeOptions(BakeArguments const& a, CommonOptions const& com
     if (!a.noiseRamp.empty()) options.noiseRamp = engine::ColourRamp::Parse(a.noiseRamp);
     if (!a.previewRange.empty()) options.previewRange = engine::PreviewRange::Parse(a.previewRange);
     ParseHalf(a.half, options);
-    ParseSize(a.size, options);
+    auto const [width, height] = ParseTexelSize("--size", a.size, {1, 65536});
+    options.width = width;
+    options.height = height;
     ParseTiles(a.tiles, options);
-    options.compression = engine::kExrCompressionWords.Parse(a.compression);
     options.orientation = common.orientation;
     options.wantsChecksums = !common.reportPath.empty();
     return options;
@@ -348,17 +330,18 @@ int Run(BakeArguments const& a, CLI::App const& verb, Context& context) {
 
 /// What the files hold.
 void AddFileOptions(CLI::App& verb, BakeArguments& a) {
-    verb.add_option("--size", a.size, "texels: N or WxH (default 2048)");
+    verb.add_option("--size", a.size, "texels: N or WxH (default 2048); 4k is 4096");
     verb.add_option("--tiles", a.tiles,
                     "UDIM tiles, e.g. 1001,1003-1005 (default all, if at most 100)")
         ->delimiter(',');
-    verb.add_option("--samples", a.options.samplesPerSide, "N x N samples per texel (default 1)")
-        ->check(CLI::Range(1, 16));
-    verb.add_option("--padding", a.options.padding, "texels grown round the charts (default 16)")
-        ->check(CLI::Range(0, 4096));
+    AddNumberOption(verb, "--samples", a.options.samplesPerSide,
+                    "N x N samples per texel (default 1)", {1, 16});
+    AddNumberOption(verb, "--padding", a.options.padding,
+                    "texels grown round the charts (default 16)", {0, 4096});
     verb.add_flag("--half{" + std::string(kAllMaps) + "}", a.half,
                   "16-bit floats (default 32-bit); --half=normal,mean: of these maps only");
-    verb.add_option("--compression", a.compression, "zip (default), zips, piz, rle, none or dwaa");
+    AddWordOption(verb, "--compression", a.options.compression, engine::kExrCompressionWords,
+                  "of the EXR (default zip)");
     verb.add_flag("--mip", a.options.hasMips, "mip levels, for renderers");
     verb.add_flag("--coverage", a.options.hasCoverage, "add a channel 'coverage'");
     verb.add_flag("--preview", a.options.hasPreview,
@@ -380,9 +363,9 @@ void AddMapOptions(CLI::App& verb, BakeArguments& a) {
     verb.add_option("--origin", a.origin,
                     "X,Y,Z taken off the map position, or auto: a round point near the mesh's "
                     "middle; header limn:origin");
-    verb.add_option("--bands", a.options.bands,
-                    "of the map bands: frequency bands, their smooth base included (default 4)")
-        ->check(CLI::Range(1, 64));
+    AddNumberOption(verb, "--bands", a.options.bands,
+                    "of the map bands: frequency bands, their smooth base included (default 4)",
+                    {1, 64});
     verb.add_flag(
         "--vector", a.options.isVector,
         "displacement and bands as whole vectors (default: only their part along the "
@@ -397,21 +380,33 @@ void AddMapOptions(CLI::App& verb, BakeArguments& a) {
 
 /// Of the map noise.
 void AddNoiseOptions(CLI::App& verb, BakeArguments& a) {
-    verb.add_option("--noise-octaves", a.options.noise.octaves,
-                    "levels of refinement with noise each (default 4)")
-        ->check(CLI::Range(1, 10));
-    verb.add_option(
-            "--noise-frequency", a.options.noise.frequency,
-            "noise cells per unit length in the first octave (default: half a cell per mean edge)")
-        ->check(CLI::Range(1e-12, 1e12));
-    verb.add_option("--noise-gain", a.options.noise.gain,
-                    "amplitude from octave to octave (default 0.5)")
-        ->check(CLI::Range(0.0, 16.0));
-    verb.add_option("--noise-seed", a.options.noise.seed,
+    AddNumberOption(verb, "--noise-octaves", a.options.noise.octaves,
+                    "levels of refinement with noise each (default 4)", {1, 10});
+    AddNumberOption(
+        verb, "--noise-frequency", a.options.noise.frequency,
+        "noise cells per unit length in the first octave (default: half a cell per mean edge)",
+        {1e-12, 1e12});
+    AddNumberOption(verb, "--noise-gain", a.options.noise.gain,
+                    "amplitude from octave to octave (default 0.5)", {0.0, 16.0});
+    AddNumberOption(verb, "--noise-seed", a.options.noise.seed,
                     "another noise for every number (default 0)");
     verb.add_option("--noise-ramp", a.noiseRamp,
                     "noise as colours: '#rrggbb,#rrggbb,...' from low to high, equally spaced");
 }
+
+/// What a renderer has to know to show the maps right.
+constexpr char const* kConventions =
+    "Conventions:\n"
+    "  Texture coordinates are subdivided, too, by the rule --fvar: the file's, else "
+    "corners-plus1,\n"
+    "  which Blender calls \"Keep Corners, Junctions\". A renderer that uses another rule shows "
+    "the\n"
+    "  maps displaced. v = 0 is the lower edge of the picture.\n"
+    "  Tangent space is (T, n x T, n): x along T, the direction in which u grows, laid into the\n"
+    "  tangent plane; y along n x T, z along the normal n; all of length 1, not packed into 0 to "
+    "1.\n"
+    "  Displacement is in units of the mesh, 0 where nothing moves: point + value * n, or with\n"
+    "  --vector point + vector, in the axes of --space. --encode S,O writes value * S + O.\n\n";
 
 }  // namespace
 
@@ -425,7 +420,10 @@ Verb AddBake(CLI::App& app) {
                      "output path, .exr, with {map}, {mesh}, {group} (a bake per group), <UDIM> or "
                      "{udim}; also <udim>, %(UDIM)d, <UVTILE> (u1_v1), <uvtile> (u0_v0)")
         ->required();
-    verb->add_option("--maps", a->options.maps, "comma-separated: " + engine::ListMapNames())
+    verb->add_option("--maps", a->options.maps,
+                     "one or more of these, or of primvar:NAME (values of the mesh), with commas "
+                     "between them")
+        ->type_name(JoinChoices(engine::ListFixedMapNames()))
         ->delimiter(',')
         ->required();
     AddFileOptions(*verb, *a);
@@ -435,8 +433,8 @@ Verb AddBake(CLI::App& app) {
                    "noise from 0 to 1 over the whole surface; fields of length 1");
     verb->add_flag("--audit", a->hasAudit,
                    "check seams, coverage and Gauss-Bonnet, and report them");
-    verb->add_option("--audit-bound", a->bounds.gaussBonnet,
-                     "of the Gauss-Bonnet error (default 1e-3); missed: exit status 4");
+    AddNumberOption(*verb, "--audit-bound", a->bounds.gaussBonnet,
+                    "of the Gauss-Bonnet error (default 1e-3); missed: exit status 4");
     verb->add_option("--seam-bound", a->seamBounds,
                      "X or MAP=X: of the largest difference along seams, in map units (default: "
                      "not judged); may be repeated")
@@ -446,10 +444,10 @@ Verb AddBake(CLI::App& app) {
         ->delimiter(',');
     verb->add_flag("--skip-existing", a->options.skipsExisting,
                    "leave files of the same input, options and version alone");
-    verb->footer(
-        "Example:\n  limn bake scenes/spot/spot.obj -o 'out/spot.{map}.<UDIM>.exr' --maps "
-        "mean,normal --size 2048 "
-        "--preview");
+    verb->footer(std::string(kConventions) +
+                 "Example:\n  limn bake scenes/spot/spot.obj -o 'out/spot.{map}.<UDIM>.exr' --maps "
+                 "mean,normal --size 2048 "
+                 "--preview");
     return {verb, [a, verb](Context& context) { return Run(*a, *verb, context); }};
 }
 

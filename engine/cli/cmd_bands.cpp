@@ -19,9 +19,7 @@ Verb AddBands(CLI::App& app) {
     verb->add_option("-o,--output", a->prefix,
                      "PREFIX of PREFIX.band0.obj ... and PREFIX.remainder.obj")
         ->required();
-    verb->add_option("--count", a->count, "number of bands, 1 to 1000")
-        ->required()
-        ->check(CLI::Range(1, 1000));
+    AddNumberOption(*verb, "--count", a->count, "number of bands", {1, 1000})->required();
     AddAlpha(*verb, a->alpha);
     verb->footer(
         "Example:\n  limn bands scenes/spot/spot.obj -o out/spot --count 4 --precision double");
@@ -38,6 +36,7 @@ Verb AddBands(CLI::App& app) {
                 std::vector<std::string> warnings;
                 auto const add = [&](std::string const& path, std::vector<double>& positions) {
                     output.positions = std::move(positions);
+                    context.GetJob().Start("writing " + path);
                     engine::RoundAsWritten(path, precision, output.positions);
                     auto const leftOut = files.Add(path, output, precision);
                     if (warnings.empty()) warnings = leftOut;  // one file speaks for all

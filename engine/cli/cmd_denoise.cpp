@@ -17,8 +17,7 @@ template <class Options>
 void AddArguments(CLI::App& verb, FilterArguments<Options>& a) {
     verb.add_option("MESH", a.mesh, "OBJ, PLY or OFF")->required();
     verb.add_option("-o,--output", a.output, "mesh to write, .obj or .ply")->required();
-    verb.add_option("--steps", a.options.steps, "how often (default 1)")
-        ->check(CLI::Range(1, 1000));
+    AddNumberOption(verb, "--steps", a.options.steps, "how often (default 1)", {1, 1000});
     AddAlpha(verb, a.options.alpha);
 }
 
@@ -45,9 +44,8 @@ Verb AddDenoise(CLI::App& app) {
     CLI::App* const verb =
         app.add_subcommand("denoise", "Smooth a mesh: keep its lowest frequency bands");
     AddArguments(*verb, *a);
-    verb->add_option("--detail", a->options.detail,
-                     "the last band to keep (default 2); less is smoother")
-        ->check(CLI::Range(0, 1000));
+    AddNumberOption(*verb, "--detail", a->options.detail,
+                    "the last band to keep (default 2); less is smoother", {0, 1000});
     verb->footer("Example:\n  limn denoise scan.ply -o out/scan.smooth.ply --detail 2 --steps 3");
     return {verb, [a](Context& context) { return Run(*a, context, engine::Denoise); }};
 }
@@ -57,11 +55,9 @@ Verb AddSharpen(CLI::App& app) {
     CLI::App* const verb =
         app.add_subcommand("sharpen", "Sharpen a mesh: add some of its frequency bands again");
     AddArguments(*verb, *a);
-    verb->add_option("--from-band", a->options.first,
-                     "first power of the high-pass filter added (default 2)")
-        ->check(CLI::Range(1, 1000));
-    verb->add_option("--to-band", a->options.last, "last one (default 4)")
-        ->check(CLI::Range(1, 1000));
+    AddNumberOption(*verb, "--from-band", a->options.first,
+                    "first power of the high-pass filter added (default 2)", {1, 1000});
+    AddNumberOption(*verb, "--to-band", a->options.last, "last one (default 4)", {1, 1000});
     verb->footer("Example:\n  limn sharpen scenes/spot/spot.obj -o out/spot.sharp.obj");
     return {verb, [a](Context& context) {
                 if (a->options.first > a->options.last)

@@ -3,7 +3,7 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
-#include "engine/cli/word_option.h"
+#include "engine/cli/options/word_option.h"
 #include "engine/evaluate/evaluate.h"
 #include "engine/evaluate/frames.h"
 #include "engine/evaluate/place_table.h"
@@ -47,6 +47,7 @@ int Run(EvalArguments const& a, Context& context) {
                         "without --precision there are 17",
                         a.mesh, engine::GetTableStep(extent), extent.GetDiagonal()));
     }
+    context.GetJob().Start("reading " + a.places);
     auto const places = engine::ReadPlaces(a.places);
     context.GetReport()["places"] = places.faces.size();
     if (!a.frames.empty()) {
@@ -58,6 +59,7 @@ int Run(EvalArguments const& a, Context& context) {
                                      context.GetJob());
     });
     context.GetReport()["places_without_limit"] = values.CountWithoutLimit();
+    context.GetJob().Start("writing " + (a.output.empty() ? "stdout" : a.output));
     Precision const precision = common.precision.value_or(enough);
     context.GetReport()["precision_written"] = kPrecisionWords.GetWord(precision);
     std::string const text = engine::FormatValues(places.GetPlaces(), values, precision);

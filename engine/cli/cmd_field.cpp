@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
-
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
-#include "engine/cli/parse_number.h"
-#include "engine/cli/word_option.h"
+#include "engine/cli/options/number_option.h"
+#include "engine/cli/options/word_option.h"
 #include "engine/field/field.h"
 #include "engine/images/png.h"
 #include "engine/io/edge_values.h"
@@ -31,21 +29,19 @@ struct FieldArguments {
 /// "12" or "12:0.5".
 engine::FieldStrength ParseStrength(std::string const& text, char const* option, double sign) {
     size_t const colon = std::min(text.find(':'), text.size());
-    double const element = ParseNumber(option, std::string_view(text).substr(0, colon));
-    if (element != std::floor(element) || std::abs(element) > 2147483647.0) {
-        throw Error(ErrorCode::BadOption, fmt::format("{} {}: '{}' is no whole number", option,
-                                                      text, text.substr(0, colon)));
-    }
+    auto const element = ParseNumber<Index>(option, std::string_view(text).substr(0, colon));
     double const strength =
-        colon < text.size() ? ParseNumber(option, std::string_view(text).substr(colon + 1)) : 1.0;
-    return {static_cast<Index>(element), sign * strength};
+        colon < text.size() ? ParseNumber<double>(option, std::string_view(text).substr(colon + 1))
+                            : 1.0;
+    return {element, sign * strength};
 }
 
 std::vector<double> ParseList(std::string const& text, char const* option) {
     std::vector<double> values;
     for (size_t start = 0; start <= text.size() && !text.empty();) {
         size_t const comma = std::min(text.find(',', start), text.size());
-        values.push_back(ParseNumber(option, std::string_view(text).substr(start, comma - start)));
+        values.push_back(
+            ParseNumber<double>(option, std::string_view(text).substr(start, comma - start)));
         start = comma + 1;
     }
     return values;
@@ -147,6 +143,7 @@ int Run(FieldArguments const& a, Context& context) {
     Precision const precision = context.GetCommon().GetPrecision();
     std::vector<std::string> warnings;
     engine::MeshSequence files;
+    context.GetJob().Start("writing " + a.output);
     if (output == Output::Mesh) {
         Precision const ofMesh = context.ChoosePrecision(a.output, field.mesh.positions);
         context.GetReport()["precision_written"] = kPrecisionWords.GetWord(ofMesh);
@@ -159,10 +156,12 @@ int Run(FieldArguments const& a, Context& context) {
     } else {
         files.Add(a.output, FormatVectors("face", field.faceVectors, precision));
     }
-    if (!a.picture.empty())
+    if (!a.picture.empty()) {
+        context.GetJob().Start("drawing " + a.picture);
         engine::WritePng(
             files.Open(a.picture),
             engine::DrawArrows(field.mesh, field.vectors, {{a.view[0], a.view[1], a.view[2]}}));
+    }
     files.Commit();
     context.Warn(warnings);
     return kDone;
@@ -196,17 +195,16 @@ Verb AddField(CLI::App& app) {
                      "CSV v0,v1,value: a field along edges of MESH, to be added");
     verb->add_option("--match", a->matchPath,
                      "CSV face,x,y,z or vertex,x,y,z: vectors that the field is to fit");
-    verb->add_option("--levels", a->options.levels,
-                     "refinements (default 0; 1 where faces are not all quads)")
-        ->check(CLI::Range(0, 10));
+    AddNumberOption(*verb, "--levels", a->options.levels,
+                    "refinements (default 0; 1 where faces are not all quads)", {0, 10});
     AddWordOption(*verb, "--at-boundary", a->options.atBoundary, kAtBoundaryWords,
                   "tangent (default): the field runs along boundaries; normal: into them");
     verb->add_flag("--balance", a->options.isBalanced,
                    "spread what strengths do not add up to evenly over their component");
     auto* const picture = verb->add_option("--picture", a->picture,
                                            "also write a PNG: arrows along the field, on the mesh");
-    verb->add_option("--view", a->view,
-                     "the picture's side that is seen, x,y,z (default 1,0.6,0.8)")
+    AddNumberOption(*verb, "--view", a->view,
+                    "the picture's side that is seen, x,y,z (default 1,0.6,0.8)")
         ->delimiter(',')
         ->expected(3)
         ->needs(picture);

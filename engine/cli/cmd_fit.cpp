@@ -5,6 +5,8 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
+#include "engine/cli/options/number_option.h"
+#include "engine/cli/options/word_option.h"
 #include "engine/fit/fit.h"
 #include "engine/io/mesh_writer.h"
 #include "engine/scene/refine.h"
@@ -15,18 +17,11 @@ namespace limn::cli {
 namespace {
 
 struct FitArguments {
-    std::string mesh, output, method = "auto";
+    std::string mesh, output;
     engine::FitOptions options;
     int level = 0;
     bool keepsResult = false;
 };
-
-eval::SolveMethod ParseMethod(std::string const& name) {
-    auto const& words = eval::kSolveMethodWords;
-    if (auto const method = words.Find(name)) return *method;
-    throw Error(ErrorCode::BadOption,
-                fmt::format("--method: '{}' is none of {}", name, JoinWords(words.List())));
-}
 
 nlohmann::json ToJson(std::vector<eval::SingularReport> const& components) {
     nlohmann::json list = nlohmann::json::array();
@@ -122,7 +117,6 @@ std::string Explain(std::string const& path, engine::FitResult const& result, do
 
 int Run(FitArguments const& a, Context& context) {
     engine::FitOptions options = a.options;
-    options.method = ParseMethod(a.method);
     options.target = context.MakeTarget(a.output);
     engine::RequireMeshEnding(a.output);
     if (options.keepsTopology && options.alpha == 0.0) {
@@ -160,24 +154,22 @@ Verb AddFit(CLI::App& app) {
         "fit", "Find the control mesh whose limit surface passes through a mesh's vertices");
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();
     verb->add_option("-o,--output", a->output, "mesh to write, .obj or .ply")->required();
-    verb->add_option("--tolerance", a->options.tolerance,
-                     "of the largest miss, over the diagonal of the bounding box (default 1e-6)")
-        ->check(CLI::Range(1e-15, 1.0));
-    verb->add_option("--method", a->method,
-                     "progressive, weighted, chebyshev, cg, direct, or auto (default): the fastest "
-                     "that converges");
-    verb->add_option("--max-iterations", a->options.maxIterations,
-                     "applications of the limit matrix (default 1000)")
-        ->check(CLI::Range(1, 100000000));
-    verb->add_option("--alpha", a->options.alpha,
-                     "generalised Catmull-Clark in the first step, 0 (default) to 1; the result is "
-                     "one level finer")
-        ->check(CLI::Range(0.0, 1.0));
+    AddNumberOption(*verb, "--tolerance", a->options.tolerance,
+                    "of the largest miss, over the diagonal of the bounding box (default 1e-6)",
+                    {1e-15, 1.0});
+    AddWordOption(*verb, "--method", a->options.method, eval::kSolveMethodWords,
+                  "auto (default): the fastest that converges");
+    AddNumberOption(*verb, "--max-iterations", a->options.maxIterations,
+                    "applications of the limit matrix (default 1000)", {1, 100000000});
+    AddNumberOption(*verb, "--alpha", a->options.alpha,
+                    "generalised Catmull-Clark in the first step, 0 (default) to 1; the result is "
+                    "one level finer",
+                    {0.0, 1.0});
     verb->add_flag("--keep-topology", a->options.keepsTopology,
                    "with --alpha: write the control mesh before that step");
-    verb->add_option("--at-level", a->level,
-                     "refine the mesh so often first, and fit the refined points (default 0)")
-        ->check(CLI::Range(0, 10));
+    AddNumberOption(*verb, "--at-level", a->level,
+                    "refine the mesh so often first, and fit the refined points (default 0)",
+                    {0, 10});
     verb->add_flag("--keep-result", a->keepsResult,
                    "write the result even where it misses the tolerance (exit status 4)");
     verb->footer("Example:\n  limn fit scenes/spot/spot.obj -o out/spot.fit.obj --report -");

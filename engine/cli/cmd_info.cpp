@@ -123,6 +123,7 @@ Verb AddInfo(CLI::App& app) {
     return {verb, [a](Context& context) {
                 context.KeepStdoutForData(true);
                 auto const model = context.Load(a->mesh, Context::Defects::Keep);
+                context.GetJob().Start("describing");
                 auto const info = engine::DescribeMesh(model);
                 auto json = ToJson(info, model);
                 std::string const text =

@@ -3,7 +3,8 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
-#include "engine/cli/word_option.h"
+#include "engine/cli/options/number_option.h"
+#include "engine/cli/options/word_option.h"
 #include "engine/images/png.h"
 #include "engine/io/mesh_writer.h"
 #include "engine/measure/measure.h"
@@ -65,9 +66,11 @@ int RunMeasure(MeasureArguments const& a, Context& context) {
         auto const curved = engine::AddVertexCurvature(
             model, engine::FindVertexCurvature(model, a.surface, common.orientation, job));
         std::string const path = a.prefix + ".ply";
+        job.Start("writing " + path);
         Precision const precision = context.ChoosePrecision(path, curved.positions);
         context.Warn(files.Add(path, curved, precision));
         context.GetReport()["precision_written"] = kPrecisionWords.GetWord(precision);
+        job.Start("drawing pictures");
         engine::PictureView const view{{a.view[0], a.view[1], a.view[2]}};
         if (a.hasPicture)
             engine::WritePng(files.Open(a.prefix + ".mean.png"),
@@ -97,8 +100,8 @@ Verb AddMeasure(CLI::App& app) {
                    "also write PREFIX.highlight.png: highlight lines of the mesh");
     verb->add_flag("--picture", a->hasPicture,
                    "also write PREFIX.mean.png: the mesh in colours of mean curvature");
-    verb->add_option("--view", a->view,
-                     "pictures: the side that is seen, x,y,z (default 1,0.6,0.8)")
+    AddNumberOption(*verb, "--view", a->view,
+                    "pictures: the side that is seen, x,y,z (default 1,0.6,0.8)")
         ->delimiter(',')
         ->expected(3);
     verb->footer("Example:\n  limn measure scenes/spot/spot.obj -o out/spot --highlight");

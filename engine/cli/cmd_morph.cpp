@@ -31,14 +31,11 @@ Verb AddMorph(CLI::App& app) {
     verb->add_option("TO", a->to, "the same faces; its tags and UVs are those of the result")
         ->required();
     verb->add_option("-o,--output", a->prefix, "PREFIX of PREFIX.0001.obj ...")->required();
-    verb->add_option("--detail", a->options.detail,
-                     "the last band of the difference to keep (default 2)")
-        ->check(CLI::Range(0, 1000));
-    verb->add_option("--rate", a->options.rate,
-                     "share of the difference that a step keeps, above 0 and below 1 (default 0.8)")
-        ->check(CLI::Range(1e-6, 1.0 - 1e-6));
-    verb->add_option("--steps", a->steps, "number of meshes (default 10)")
-        ->check(CLI::Range(1, 9999));
+    AddNumberOption(*verb, "--detail", a->options.detail,
+                    "the last band of the difference to keep (default 2)", {0, 1000});
+    AddNumberOption(*verb, "--rate", a->options.rate,
+                    "share of the difference that a step keeps (default 0.8)", {1e-6, 1.0 - 1e-6});
+    AddNumberOption(*verb, "--steps", a->steps, "number of meshes (default 10)", {1, 9999});
     AddAlpha(*verb, a->options.alpha);
     verb->footer("Example:\n  limn morph neutral.obj smile.obj -o out/smile --steps 12");
     return {verb, [a](Context& context) {
@@ -53,6 +50,7 @@ Verb AddMorph(CLI::App& app) {
                 for (int step = 1; step <= a->steps; ++step) {
                     std::string const path = fmt::format("{}.{:04}.obj", a->prefix, step);
                     output.positions = morph.MakeNext(context.GetJob());
+                    context.GetJob().Start("writing " + path);
                     engine::RoundAsWritten(path, precision, output.positions);
                     auto const leftOut = files.Add(path, output, precision);
                     if (step == 1) warnings = leftOut;

@@ -7,7 +7,8 @@
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
 #include "engine/cli/option_rules.h"
-#include "engine/cli/word_option.h"
+#include "engine/cli/options/number_option.h"
+#include "engine/cli/options/word_option.h"
 #include "engine/differential/curves.h"
 #include "engine/differential/differential.h"
 #include "engine/differential/edit_reader.h"
@@ -42,8 +43,9 @@ engine::Model ApplyRule(RefineArguments const& a, CommonOptions const& common,
                         engine::Model const& model) {
     if (!a.rule) return model;
     if (common.scheme && a.rule->scheme != model.GetCage().scheme) {
-        throw Error(ErrorCode::BadOption, fmt::format("--rule {} contradicts --scheme {}",
-                                                      kRuleWords.GetWord(*a.rule), *common.scheme));
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("--rule {} contradicts --scheme {}", kRuleWords.GetWord(*a.rule),
+                                engine::kSchemeWords.GetWord(*common.scheme)));
     }
     return WithScheme(model, a.rule->scheme);
 }
@@ -132,6 +134,7 @@ int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& contex
     RefuseEach(verb, {"--limit", "--weld"}, kWhy);
     auto const rule = GetRule(a) == SubdivisionRule::Butterfly ? eval::CurveRule::FourPoint
                                                                : eval::CurveRule::CubicBSpline;
+    context.GetJob().Start("reading " + a.mesh);
     auto const [curves, sha256] = engine::ReadPolylines(a.mesh);
     auto const start = std::chrono::steady_clock::now();
     auto const [fine, worst] =
@@ -139,6 +142,7 @@ int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& contex
     std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - start;
     size_t numPoints = 0;
     for (eval::Curve const& curve : fine) numPoints += curve.points.size();
+    context.GetJob().Start("writing " + a.output);
     Precision const precision = context.ChoosePrecision(a.output, engine::ListCoordinates(fine));
     engine::WritePolylines(a.output, fine, precision);
     auto const report = context.GetReport();
@@ -181,7 +185,7 @@ Verb AddRefine(CLI::App& app) {
     CLI::App* const verb = app.add_subcommand("refine", "Subdivide a mesh");
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();
     verb->add_option("-o,--output", a->output, "mesh to write, .obj or .ply")->required();
-    verb->add_option("--levels", a->levels, "how often (default 1)")->check(CLI::Range(0, 10));
+    AddNumberOption(*verb, "--levels", a->levels, "how often (default 1)", {0, 10});
     AddWordOption(*verb, "--space", a->isDifferential, kIsDifferentialWords,
                   "spatial (default): rules on positions; differential: on mean-curvature normals");
     AddWordOption(*verb, "--rule", a->rule, kRuleWords,
@@ -195,15 +199,14 @@ Verb AddRefine(CLI::App& app) {
     };
     differential(AddWordOption(*verb, "--laplacian", a->options.laplacian, kLaplacianWords,
                                "combinatorial (default), cotangent or mesh"));
-    differential(verb->add_option("--dirmag", a->options.dirMagLevels,
-                                  "first levels done by direction and magnitude (default 0)"))
-        ->check(CLI::Range(0, 10));
-    differential(verb->add_option("--spatial-first", a->options.spatialLevels,
-                                  "levels done in space before (default 0)"))
-        ->check(CLI::Range(0, 10));
+    differential(AddNumberOption(*verb, "--dirmag", a->options.dirMagLevels,
+                                 "first levels done by direction and magnitude (default 0)",
+                                 {0, 10}));
+    differential(AddNumberOption(*verb, "--spatial-first", a->options.spatialLevels,
+                                 "levels done in space before (default 0)", {0, 10}));
     differential(
-        verb->add_option("--handle", a->options.handles,
-                         "vertex that stays: one per component or boundary loop (repeatable)"));
+        AddNumberOption(*verb, "--handle", a->options.handles,
+                        "vertex that stays: one per component or boundary loop (repeatable)"));
     differential(AddWordOption(*verb, "--solver", a->options.solver, kDifferentialSolverWords,
                                "multigrid (default) or cholesky"));
     differential(verb->add_option(

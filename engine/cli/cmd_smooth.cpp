@@ -8,7 +8,8 @@
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
 #include "engine/cli/option_rules.h"
-#include "engine/cli/word_option.h"
+#include "engine/cli/options/number_option.h"
+#include "engine/cli/options/word_option.h"
 #include "engine/images/png.h"
 #include "engine/io/file.h"
 #include "engine/io/mesh_writer.h"
@@ -46,8 +47,6 @@ void CheckWidths(SmoothArguments const& a, CLI::App const& verb) {
 
 void CheckSolver(SmoothArguments const& a, CLI::App const& verb) {
     RefuseTogether(verb, {"--sweeps", "--iterations", "--tolerance"});
-    if (a.tolerance && std::isnan(*a.tolerance))
-        throw Error(ErrorCode::BadOption, "--tolerance: give a number from 1e-14 to 1");
     using Solver = eval::CascadeSolver;
     Solver const solver = a.options.solver;
     if (solver != Solver::ConjugateGradients) {
@@ -63,13 +62,6 @@ void CheckOptions(SmoothArguments const& a, CLI::App const& verb) {
     engine::RequireMeshEnding(a.output);
     CheckWidths(a, verb);
     CheckSolver(a, verb);
-    for (auto const& [name, value] : {std::pair{"--width", a.width},
-                                      {"--width-factor", a.widthFactor},
-                                      {"--width-scale", a.widthScale}}) {
-        if (!(value >= 0.0 && std::isfinite(value)))
-            throw Error(ErrorCode::BadOption,
-                        fmt::format("{}: {} is no width; give a number from 0 up", name, value));
-    }
     RefuseTogether(verb, {"--graph", "--preserve-volume"});
     RefuseTogether(verb, {"--limit-width", "--keep-result"});
     int const maxLevels = a.IsBisection() ? 20 : 10;
@@ -193,10 +185,13 @@ int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     if (engine::GetEnding(a.output) == ".obj")  // which has no place for the widths
         std::erase_if(mesh->primvars, [](auto const& primvar) { return primvar.name == "width"; });
     engine::MeshSequence files;
+    context.GetJob().Start("writing " + a.output);
     auto const warnings = files.Add(a.output, *mesh, found.precision);
-    if (!a.picture.empty())
+    if (!a.picture.empty()) {
+        context.GetJob().Start("drawing " + a.picture);
         engine::WritePng(files.Open(a.picture),
                          engine::DrawShaded(*mesh, {{a.view[0], a.view[1], a.view[2]}}));
+    }
     files.Commit();
     context.Warn(warnings);
     context.GetReport()["precision_written"] = kPrecisionWords.GetWord(found.precision);
@@ -205,17 +200,20 @@ int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     return found.HasConverged() ? kDone : context.MissTarget(Explain(a.mesh, found));
 }
 
+constexpr NumberRange<double> kAnyWidth{.low = 0.0};
+
 void AddWidthOptions(CLI::App& verb, SmoothArguments& a) {
     auto const width = [](CLI::Option* option) {
         return option->group("Width of the filter (one of these)");
     };
-    width(verb.add_option("--width", a.width, "sigma everywhere, in mesh units"));
-    width(verb.add_option("--width-factor", a.widthFactor,
-                          "sigma everywhere, times the mean edge length (default 0.12)"));
+    width(AddNumberOption(verb, "--width", a.width, "sigma everywhere, in mesh units", kAnyWidth));
+    width(AddNumberOption(verb, "--width-factor", a.widthFactor,
+                          "sigma everywhere, times the mean edge length (default 0.12)",
+                          kAnyWidth));
     width(verb.add_flag("--local", a.isLocal,
                         "sigma by the edge lengths at each vertex, smoothed along"));
-    width(verb.add_option("--width-scale", a.widthScale,
-                          "--local: times the edge length (default 0.12)"));
+    width(AddNumberOption(verb, "--width-scale", a.widthScale,
+                          "--local: times the edge length (default 0.12)", kAnyWidth));
     width(verb.add_option("--width-map", a.widthMap, "CSV vertex,width: 0 where not listed"));
     width(verb.add_option("--width-edges", a.widthEdges,
                           "CSV v0,v1,width: rounds these edges, and leaves faces untouched"));
@@ -231,15 +229,14 @@ void AddSolverOptions(CLI::App& verb, SmoothArguments& a) {
                         "(--scheme catmark: triangles, too); bisect: triangles in two"));
     solve(AddWordOption(verb, "--solver", a.options.solver, kCascadeSolverWords,
                         "cg (default), jacobi or exact"));
-    solve(verb.add_option(
-              "--sweeps", a.sweeps,
-              "on the finest level, more on coarser ones by the a-priori rule (jacobi: default 1)"))
-        ->check(CLI::Range(1, 1000000));
-    solve(verb.add_option("--iterations", a.iterations, "the same number on every level"))
-        ->check(CLI::Range(1, 1000000));
-    solve(verb.add_option("--tolerance", a.tolerance,
-                          "cg: to this residual on every level (default 1e-6)"))
-        ->check(CLI::Range(1e-14, 1.0));
+    solve(AddNumberOption(
+        verb, "--sweeps", a.sweeps,
+        "on the finest level, more on coarser ones by the a-priori rule (jacobi: default 1)",
+        {1, 1000000}));
+    solve(AddNumberOption(verb, "--iterations", a.iterations, "the same number on every level",
+                          {1, 1000000}));
+    solve(AddNumberOption(verb, "--tolerance", a.tolerance,
+                          "cg: to this residual on every level (default 1e-6)", {1e-14, 1.0}));
 }
 
 void AddConstraintOptions(CLI::App& verb, SmoothArguments& a) {
@@ -268,15 +265,14 @@ Verb AddSmooth(CLI::App& app) {
     verb->add_option("-o,--output", a->output,
                      "mesh to write, .obj, or .ply with the width at each vertex")
         ->required();
-    verb->add_option("--levels", a->options.levels, "refinements (default 2)")
-        ->check(CLI::Range(1, 20));
+    AddNumberOption(*verb, "--levels", a->options.levels, "refinements (default 2)", {1, 20});
     AddWidthOptions(*verb, *a);
     AddSolverOptions(*verb, *a);
     AddConstraintOptions(*verb, *a);
     auto* const picture =
         verb->add_option("--picture", a->picture, "also write a PNG: the result, flat shaded");
-    verb->add_option("--view", a->view,
-                     "the picture's side that is seen, x,y,z (default 1,0.6,0.8)")
+    AddNumberOption(*verb, "--view", a->view,
+                    "the picture's side that is seen, x,y,z (default 1,0.6,0.8)")
         ->delimiter(',')
         ->expected(3)
         ->needs(picture);

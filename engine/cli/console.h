@@ -21,12 +21,17 @@ void SayWithoutWaiting(std::string_view text);
 /// Writes data to stdout. \throws Error Io, e.g. on a full disk
 void PrintData(std::string const& text);
 
-/// The terminal as a job's host: progress and warnings on stderr, as they come.
+/// The terminal as a job's host: progress, warnings and, where wanted, phases with their seconds on
+/// stderr, as they come.
 class Console {
 public:
     enum class Style { None, Lines, Bar };
+    enum class Detail { Quiet, Usual, Verbose };
 
-    Console(Style style, bool isQuiet) : _style(style), _isQuiet(isQuiet) {}
+    /// \param style  nothing for what suits stderr; a bar where there is no terminal, or one of
+    ///               less than kLeastColumns, is told in lines
+    Console(std::optional<Style> style, Detail detail);
+    ~Console();
     Console(Console const&) = delete;
     Console& operator=(Console const&) = delete;
 
@@ -37,13 +42,19 @@ private:
     using Clock = std::chrono::steady_clock;
 
     void OnProgress(engine::Progress const& progress);
-    void OnWarning(std::string const& message);
+    void OnPhase(std::string const& phase);
+    void EndPhase();
     void Show(engine::Progress const& progress);
+    void ShowBar(engine::Progress const& progress, double share, std::string const& time);
+    void PrintLine(std::string const& text);
 
     Style _style;
-    bool _isQuiet;
+    Detail _detail;
+    Clock::time_point const _runStart = Clock::now();
     Clock::time_point _start, _lastShown;
-    bool _isLineOpen = false;
+    std::string _phase;  ///< the present one, in detail
+    Clock::time_point _phaseStart;
+    int _barColumns = 0;  ///< of the line that a bar is on; 0 where it is on none
 };
 
 /// Nothing is the style that suits what stderr is.

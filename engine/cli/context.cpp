@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
@@ -20,21 +19,19 @@ namespace limn::cli {
 
 namespace {
 
-Console::Style ChooseStyle(CommonOptions const& common) {
-    if (common.isQuiet) return Console::Style::None;
-    if (common.progress) return *common.progress;
-    return ::isatty(STDERR_FILENO) ? Console::Style::Bar : Console::Style::Lines;
+Console::Detail ChooseDetail(CommonOptions const& common) {
+    return common.isQuiet     ? Console::Detail::Quiet
+           : common.isVerbose ? Console::Detail::Verbose
+                              : Console::Detail::Usual;
 }
 
 void ApplyOptions(CommonOptions const& common, far_ext::ControlMesh& cage) {
-    if (common.scheme) cage.scheme = engine::kSchemeWords.Parse(*common.scheme);
-    if (common.boundary)
-        cage.options.SetVtxBoundaryInterpolation(engine::kBoundaryWords.Parse(*common.boundary));
-    if (common.fvar)
-        cage.options.SetFVarLinearInterpolation(engine::kFVarWords.Parse(*common.fvar));
-    if (common.creases) cage.options.SetCreasingMethod(engine::kCreaseWords.Parse(*common.creases));
-    if (common.triangles)
-        cage.options.SetTriangleSubdivision(engine::kTriangleWords.Parse(*common.triangles));
+    auto& options = cage.options;
+    if (common.scheme) cage.scheme = *common.scheme;
+    if (common.boundary) options.SetVtxBoundaryInterpolation(*common.boundary);
+    if (common.fvar) options.SetFVarLinearInterpolation(*common.fvar);
+    if (common.creases) options.SetCreasingMethod(*common.creases);
+    if (common.triangles) options.SetTriangleSubdivision(*common.triangles);
 }
 
 }  // namespace
@@ -43,7 +40,7 @@ Context::Context(CommonOptions const& common, RunStart start, engine::MeshSource
                  std::function<int()> const& getStopStatus)
     : _common(common),
       _meshes(meshes),
-      _console(ChooseStyle(common), common.isQuiet),
+      _console(common.progress, ChooseDetail(common)),
       _job(_console.MakeHost([=] { return getStopStatus && getStopStatus() != 0; })),
       _report(common.reportPath) {
     auto const report = _report.Open();
@@ -55,7 +52,9 @@ Context::Context(CommonOptions const& common, RunStart start, engine::MeshSource
 }
 
 engine::Model Context::Load(std::string const& path, Defects defects) {
+    _job.Start("reading " + path);
     engine::Scene scene = _meshes.Read(path);
+    _job.Start("topology of " + path);
     if (_common.weld) scene = engine::Weld(std::move(scene), *_common.weld);
     ApplyOptions(_common, scene.cage);
     Warn(scene.warnings);
@@ -98,6 +97,7 @@ Precision Context::ChoosePrecision(std::string const& path, std::span<double con
 }
 
 void Context::WriteMesh(std::string const& path, engine::Scene const& mesh, Precision precision) {
+    _job.Start("writing " + path);
     Warn(engine::WriteMesh(path, mesh, precision));
     GetReport()["precision_written"] = kPrecisionWords.GetWord(precision);
 }

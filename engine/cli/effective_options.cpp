@@ -55,7 +55,7 @@ json DescribeOptions(CLI::App const& verb, OptionDefaults const& defaults) {
     json described = json::object();
     for (CLI::Option const* const option : verb.get_options()) {
         auto const& names = option->get_lnames();
-        if (names.empty() || names[0] == "help") continue;
+        if (names.empty() || names[0] == "help" || names[0] == "version") continue;
         described[names[0]] = DescribeOption(*option, defaults.at(option));
     }
     return described;

@@ -5,6 +5,7 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
+#include "engine/cli/options/number_option.h"
 #include "engine/fit/bands.h"
 
 namespace limn::cli {
@@ -12,9 +13,8 @@ namespace limn::cli {
 // What bands, denoise, sharpen and morph have in common: --alpha, and a report of sizes.
 
 inline void AddAlpha(CLI::App& verb, double& alpha) {
-    verb.add_option("--alpha", alpha,
-                    "generalised Catmull-Clark in the first step, 0 (default) to 1")
-        ->check(CLI::Range(0.0, 1.0));
+    AddNumberOption(verb, "--alpha", alpha,
+                    "generalised Catmull-Clark in the first step, 0 (default) to 1", {0.0, 1.0});
 }
 
 /// {"volume": ..., "bounding_box": [[x,y,z],[x,y,z]]}, volume null where open.

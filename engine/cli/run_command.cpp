@@ -4,7 +4,6 @@
 #include <cstdlib>
 #include <new>
 #include <optional>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -12,48 +11,14 @@
 #include <tbb/task_arena.h>
 
 #include "engine/cli/cli.h"
-#include "engine/cli/effective_options.h"
-#include "engine/cli/names.h"
 #include "engine/cli/option_names.h"
-#include "engine/cli/word_option.h"
-#include "engine/scene/subdivision_names.h"
-#include "engine/version.h"
+#include "engine/cli/parser.h"
+#include "engine/cli/version_text.h"
 #include "far_ext/error.h"
 
 namespace limn::cli {
 
 namespace {
-
-void AddCommonOptions(CLI::App& app, CommonOptions& o) {
-    auto const group = [&](CLI::Option* option) { option->group("Options every verb shares"); };
-    group(app.add_option("--scheme", o.scheme, "catmark, loop or bilinear (default catmark)"));
-    group(app.add_option("--boundary", o.boundary,
-                         "edge-and-corner, edge-only or none (default: the file's tag)"));
-    group(app.add_option("--fvar", o.fvar,
-                         "none, corners-only, corners-plus1, corners-plus2, boundaries or all "
-                         "(default: the file's tag, "
-                         "else corners-plus1)"));
-    group(app.add_option("--creases", o.creases, "uniform or chaikin (default: the file's tag)"));
-    group(
-        app.add_option("--triangles", o.triangles, "catmark or smooth (default: the file's tag)"));
-    group(app.add_option("--weld", o.weld,
-                         "join boundary vertices that lie within this length of each other (0: in "
-                         "one place), as where an exporter has cut along texture seams"));
-    group(AddWordOption(app, "--orientation", o.orientation, engine::kOrientationWords,
-                        "right (default): faces are counter-clockwise from outside; left"));
-    group(app.add_option("--threads", o.numThreads,
-                         "default: LIMN_THREADS, OPENIMAGEIO_THREADS, CUE_THREADS, else all cores")
-              ->check(CLI::Range(1, 1024)));
-    group(
-        app.add_option("--report", o.reportPath, "write a JSON report of the run (- for stdout)"));
-    group(AddWordOption(app, "--precision", o.precision, kPrecisionWords,
-                        "float or double: digits of output (default: float, of meshes far from "
-                        "the origin double)"));
-    group(app.add_flag("--quiet", o.isQuiet, "no progress, no warnings"));
-    group(app.add_flag("--verbose", o.isVerbose, "say more"));
-    group(AddWordOption(app, "--progress", o.progress, kProgressWords,
-                        "auto (default), bar, lines or none"));
-}
 
 int ChooseThreads(CommonOptions const& options) {
     if (options.numThreads > 0) return options.numThreads;
@@ -127,56 +92,6 @@ RunEnd ConcludeRun(int status, Context const& context) {
 
 }  // namespace
 
-/// The command line as CLI11 understands it.
-struct Parser {
-    CLI::App app{"limn bakes the true limit of subdivision surfaces.", "limn"};
-    CommonOptions common;
-    std::vector<Verb> verbs;
-    OptionDefaults defaults;
-
-    Parser() {
-        app.set_version_flag("--version", kVersionAndBuild);
-        app.require_subcommand(1);
-        app.get_formatter()->column_width(34);
-        app.option_defaults()->always_capture_default();
-        verbs = {AddInfo(app),    AddEval(app),  AddBake(app),   AddRefine(app),
-                 AddMeasure(app), AddFit(app),   AddBands(app),  AddDenoise(app),
-                 AddSharpen(app), AddMorph(app), AddSmooth(app), AddField(app)};
-        for (auto const& verb : verbs) {
-            AddCommonOptions(*verb.app, common);
-            TakeDefaults(*verb.app, defaults);
-        }
-    }
-
-    void Parse(std::vector<std::string> const& arguments) {
-        app.parse(
-            std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // last one first
-    }
-
-    Verb const& GetVerb() const {
-        return *std::ranges::find_if(verbs, [](Verb const& verb) { return verb.app->parsed(); });
-    }
-
-    RunStart MakeStart(std::vector<std::string> const& arguments) const {
-        CLI::App const& verb = *GetVerb().app;
-        auto options = DescribeOptions(verb, defaults);
-        options["threads"] = ChooseThreads(common);
-        return {verb.get_name(), arguments, std::move(options)};
-    }
-};
-
-namespace {
-
-/// Help or the version, to stdout.
-RunEnd PrintAnswer(CLI::App const& app, CLI::Success const& asked) {
-    std::ostringstream out, err;
-    RunEnd const end{app.exit(asked, out, err)};
-    PrintData(out.str());
-    return end;
-}
-
-}  // namespace
-
 Command::Command(std::vector<std::string> arguments, engine::MeshSource& meshes,
                  std::function<int()> getStopStatus)
     : _arguments(std::move(arguments)), _meshes(meshes), _getStopStatus(std::move(getStopStatus)) {}
@@ -189,23 +104,26 @@ int Command::Run() {
 
 RunEnd Command::ParseAndRun() {
     Parser parser;
-    try {
-        parser.Parse(_arguments);
-    } catch (CLI::Success const& asked) {
-        return PrintAnswer(parser.app, asked);
-    } catch (CLI::ParseError const& error) {
-        return {kUsage, AsLine(fmt::format("{} (limn VERB --help tells more)", error.what()))};
+    if (auto const answer = parser.Parse(_arguments)) {
+        PrintData(*answer);
+        return {};
     }
     return RunVerb(parser);
 }
 
 RunEnd Command::RunVerb(Parser const& parser) {
-    Context context(parser.common, parser.MakeStart(_arguments), _meshes, _getStopStatus);
+    CommonOptions const& common = parser.GetCommon();
+    int const numThreads = ChooseThreads(common);
+    auto options = parser.DescribeVerbsOptions();
+    options["threads"] = numThreads;
+    Verb const& verb = parser.GetVerb();
+    Context context(common, {verb.app->get_name(), _arguments, std::move(options)}, _meshes,
+                    _getStopStatus);
+    context.GetJob().Note(fmt::format("{}, threads: {}", GetVersionText(), numThreads));
     SetContext(&context);
     RunEnd end = Attempt(
         [&] {
-            int const status = RunOnThreads(ChooseThreads(parser.common),
-                                            [&] { return parser.GetVerb().run(context); });
+            int const status = RunOnThreads(numThreads, [&] { return verb.run(context); });
             return ConcludeRun(status, context);
         },
         _getStopStatus);

@@ -12,7 +12,7 @@
 namespace limn::cli {
 
 class Context;
-struct Parser;
+class Parser;
 struct RunEnd;
 
 /// Exit statuses that a caller may want to tell apart.

@@ -8,6 +8,7 @@ namespace limn::engine {
 
 RefinedCurves RefineCurves(std::vector<eval::Curve> const& curves, CurveOptions const& options,
                            Job& job) {
+    job.Start("refining curves");
     RefinedCurves refined;
     for (eval::Curve const& coarse : curves) {
         job.CheckStopped();

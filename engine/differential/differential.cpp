@@ -83,6 +83,7 @@ class DifferentialRefinement {
 public:
     DifferentialRefinement(Model const& model, DifferentialOptions const& options, Job& job)
         : _model(model), _options(options), _job(job), _spatial(model.GetPositions()) {
+        job.Start("refining topology");
         far_ext::ControlMesh curved = model.GetCage();
         curved.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
         _refiner = MakeUniformRefiner(curved, model.GetPath(), options.levels);
@@ -156,6 +157,7 @@ void DifferentialRefinement::FitAreas(eval::Reconstructor& reconstructor, Rows c
 }
 
 Rows DifferentialRefinement::FindPositions() {
+    _job.Start("subdividing coordinates");
     _start = _spatial;
     for (int level = 1; level <= _refiner->GetMaxLevel(); ++level) {
         _job.CheckStopped();
@@ -174,8 +176,10 @@ Rows DifferentialRefinement::FindPositions() {
     auto const start = std::chrono::steady_clock::now();
     Rows positions = _spatial;
     bool const isCholesky = _options.solver == DifferentialSolver::Cholesky;
+    _job.Start(isCholesky ? "factorising" : "building levels");
     eval::Reconstructor reconstructor(*_refiner, _options.handles,
                                       isCholesky ? _refiner->GetMaxLevel() : 0);
+    _job.Start("solving");
     auto const solve = reconstructor.Solve(deltas, positions, {.tolerance = _options.tolerance});
     _report.unknowns = reconstructor.GetMultigrid().GetLevels().back().numUnknowns;
     _report.iterations = solve.iterations;
@@ -191,6 +195,7 @@ Rows DifferentialRefinement::FindPositions() {
         _report.precision = ChoosePrecision(*_options.target, FindExtent(positions), _job);
         RoundAsWritten(_options.target->path, _report.precision, positions);
     }
+    _job.Start("measuring energy");
     double const size = FindSize(_spatial);
     _report.sizeRatio = size > 0.0 ? FindSize(positions) / size : 1.0;
     _report.energy = eval::FindThinPlateEnergy(

@@ -19,6 +19,7 @@ size_t LimitValues::CountWithoutLimit() const {
 LimitValues EvaluateLimit(Model const& model, PlaceArrays const& places, Orientation orientation,
                           Job& job) {
     RequireLimit(model);
+    job.Start("evaluating places");
     eval::LimitSurface const surface(model.GetRefiner());
     auto const located = LocatePlaces(model, places);
     std::vector<eval::SurfaceSample> samples(located.size());

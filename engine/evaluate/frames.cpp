@@ -176,6 +176,7 @@ FramesReport EvaluateFrames(Model const& model, PlaceArrays const& places,
     FramesReport report;
     report.outputs = MakeOutputPaths(options.outputPattern, frames);
     RequireLimit(model);
+    job.Start("building the table of places");
     eval::LimitSurface const surface(model.GetRefiner());
     eval::PlaceStencils const stencils(surface, LocatePlaces(model, places));
     std::optional<eval::StencilEvaluator> evaluator;
@@ -209,6 +210,7 @@ FramesReport EvaluateFrames(Model const& model, PlaceArrays const& places,
         file->Write(FormatValues(places, values, precision));
         file->Finish();
         files[i] = std::move(file);
+        job.Note("frame " + frames[i].path);
         job.Advance();
     };
     // One frame more than there are threads, so that a core that waits for the disk finds other

@@ -219,11 +219,13 @@ void FindFaceVectors(Field& field) {
 
 Field DesignField(Model const& model, FieldOptions const& options, Job& job) {
     far_ext::CheckForms(model.GetRefiner());
+    job.Start("designing the field");
     Design design = DesignControlForm(model, options, job);
 
     int levels = options.levels;
     if (options.hasVertexVectors && !far_ext::HasRefinedFaces(model.GetCage()))
         levels = std::max(levels, 1);
+    job.Start("subdividing the field");
     Field field;
     field.audit = std::move(design.audit);
     field.refined = MakeUniformRefiner(model.GetCage(), model.GetPath(), levels);
@@ -232,6 +234,7 @@ Field DesignField(Model const& model, FieldOptions const& options, Job& job) {
     field.mesh.positions = model.GetPositions();
     for (int level = 1; level <= levels; ++level)
         field.mesh.positions = eval::RefineValues<3>(*field.refined, level, field.mesh.positions);
+    job.Start("finding vectors");
     if (options.hasVertexVectors) FindVertexVectors(field);
     FindFaceVectors(field);
 

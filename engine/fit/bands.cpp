@@ -36,8 +36,10 @@ MeshExtent MeasureExtent(Model const& model, std::span<double const> positions) 
 }
 
 Bands SplitIntoBands(Model const& model, int count, double alpha, Job& job) {
+    job.Start("building the limit matrix");
     auto const A = eval::LimitOperator::Build(model.GetRefiner(), 0, {.alpha = alpha});
     std::vector<std::vector<double>> bands;
+    job.Start("filtering");
     std::vector<double> rest = model.GetPositions();
     eval::ApplyHighPass(A, 3, count, rest, [&](int i, std::span<double const> part) {
         job.CheckStopped();
@@ -53,7 +55,9 @@ Bands SplitIntoBands(Model const& model, int count, double alpha, Job& job) {
 }
 
 std::vector<double> Denoise(Model const& model, DenoiseOptions const& options, Job& job) {
+    job.Start("building the limit matrix");
     auto const A = eval::LimitOperator::Build(model.GetRefiner(), 0, {.alpha = options.alpha});
+    job.Start("filtering");
     std::vector<double> positions = model.GetPositions();
     for (int step = 0; step < options.steps; ++step) {
         job.CheckStopped();
@@ -68,7 +72,9 @@ std::vector<double> Sharpen(Model const& model, SharpenOptions const& options, J
                     fmt::format("bands {} to {} are none; they begin at 1, and are given in order",
                                 options.first, options.last));
     }
+    job.Start("building the limit matrix");
     auto const A = eval::LimitOperator::Build(model.GetRefiner(), 0, {.alpha = options.alpha});
+    job.Start("filtering");
     std::vector<double> positions = model.GetPositions();
     for (int step = 0; step < options.steps; ++step) {
         job.CheckStopped();

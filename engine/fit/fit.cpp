@@ -79,6 +79,7 @@ int ChooseDepth(Scene const& mesh, double size, double tolerance) {
 /// \param refiner  the mesh's
 Certificate Certify(Scene const& mesh, Far::TopologyRefiner const& refiner,
                     std::span<double const> data, double tolerance, Job& job) {
+    job.Start("certifying");
     eval::LimitSurface const surface(refiner);
     double const size = eval::FindSize(data, 3);
     auto const limits =
@@ -148,10 +149,11 @@ void Finish(Model const& model, FitOptions const& options, Job& job, FitResult& 
 
 /// Solves for primvars as for positions.
 void FitPrimvars(eval::Interpolator const& interpolator, eval::InterpolateOptions const& solve,
-                 FitResult& result) {
+                 Job& job, FitResult& result) {
     for (Primvar& primvar : result.mesh.primvars) {
         std::vector<double> const data(primvar.values.begin(), primvar.values.end());
         std::vector<double> fitted(data.size());
+        job.Start("solving for " + primvar.name);
         result.primvars.push_back(interpolator.Solve(data, primvar.numChannels, fitted, solve));
         std::transform(fitted.begin(), fitted.end(), primvar.values.begin(),
                        [](double x) { return static_cast<float>(x); });
@@ -169,6 +171,7 @@ bool FitResult::HasConverged() const {
 FitResult FitToLimit(Model const& model, FitOptions const& options, Job& job) {
     auto const start = std::chrono::steady_clock::now();
     if (options.alpha == 0.0) RequireLimit(model);  // else n-gons are subdivided first
+    job.Start("building the limit matrix");
     eval::Interpolator const interpolator(model.GetRefiner(), 0, {.alpha = options.alpha});
     eval::InterpolateOptions const solve{.method = options.method,
                                          .tolerance = options.tolerance,
@@ -176,10 +179,15 @@ FitResult FitToLimit(Model const& model, FitOptions const& options, Job& job) {
                                          .onIteration = [&](int, double) { job.CheckStopped(); }};
     FitResult result;
     result.mesh = model.MakeScene();
+    job.Start("solving for positions");
     result.report = interpolator.Solve(model.GetPositions(), 3, result.mesh.positions, solve);
-    FitPrimvars(interpolator, solve, result);
+    FitPrimvars(interpolator, solve, job, result);
     std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - start;
     result.solveSeconds = elapsed.count();
+    job.Note(fmt::format("method {}: {} applications of the limit matrix, residual {:.2g}",
+                         GetName(result.report.method), result.report.iterations,
+                         result.report.residual));
+    job.Start("estimating the smallest eigenvalue");
     result.lambdaMin =
         result.report.singularComponents.empty() ? interpolator.EstimateSmallestEigenvalue() : 0.0;
     Finish(model, options, job, result);

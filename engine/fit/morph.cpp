@@ -45,6 +45,7 @@ Morph::Morph(Model const& from, Model const& to, MorphOptions const& options)
 
 std::vector<double> const& Morph::MakeNext(Job& job) {
     job.CheckStopped();
+    job.Start("morphing");
     eval::MorphStep(_operator, 3, _options.detail, _options.rate, _to.GetPositions(), _positions);
     return _positions;
 }

@@ -247,6 +247,7 @@ Measurement Measure(Model const& model, MeasuredSurface surface, Orientation ori
                     Job& job) {
     bool const isLimit = surface == MeasuredSurface::Limit;
     if (isLimit) RequireLimit(model);
+    job.Start("measuring");
     Surveyor const surveyor(model, orientation, job);
     Measurement found =
         surveyor.Conclude(isLimit ? surveyor.SurveyLimit() : surveyor.SurveyMesh(), surface);
@@ -263,6 +264,7 @@ Measurement Measure(Model const& model, MeasuredSurface surface, Orientation ori
 
 VertexCurvature FindVertexCurvature(Model const& model, MeasuredSurface surface,
                                     Orientation orientation, Job& job) {
+    job.Start("finding curvature at vertices");
     VertexCurvature found;
     if (surface == MeasuredSurface::Limit) {
         RequireLimit(model);

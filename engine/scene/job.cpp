@@ -13,11 +13,17 @@ constexpr std::chrono::milliseconds kPause(50);
 
 void Job::Start(std::string phase, size_t total) {
     std::lock_guard const lock(_hostMutex);
+    if (_host.onPhase) _host.onPhase(phase);
     _phase = std::move(phase);
     _total = total;
     _done = 0;
     _nextTold = (Clock::now() + kPause).time_since_epoch().count();
     Tell(0, false);
+}
+
+void Job::Start(std::string const& phase) {
+    std::lock_guard const lock(_hostMutex);
+    if (_host.onPhase) _host.onPhase(phase);
 }
 
 void Job::Advance(size_t steps) {
@@ -39,6 +45,11 @@ void Job::Finish() {
 
 void Job::Tell(size_t done, bool isFinished) {
     if (_host.onProgress) _host.onProgress({_phase, done, _total, isFinished});
+}
+
+void Job::Note(std::string const& message) {
+    std::lock_guard const lock(_hostMutex);
+    if (_host.onNote) _host.onNote(message);
 }
 
 void Job::Warn(std::string const& message) {

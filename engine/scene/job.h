@@ -27,6 +27,10 @@ struct JobHost {
     /// The start (done == 0) and the end of each phase, and at most 20 times a second between.
     std::function<void(Progress const&)> onProgress{};
     std::function<void(std::string const&)> onWarning{};
+    /// Each phase as it starts, e.g. "factorising"; the one before has ended then.
+    std::function<void(std::string const&)> onPhase{};
+    /// What only those want to know who watch closely: tiles, files.
+    std::function<void(std::string const&)> onNote{};
     /// Asked often and from many threads at once: a look at an atomic flag.
     std::function<bool()> isStopped{};
 };
@@ -40,8 +44,12 @@ public:
 
     /// Starts a phase of `total` steps. One phase at a time.
     void Start(std::string phase, size_t total);
+    /// Starts a phase whose steps nobody counts; it ends where the next one starts.
+    void Start(std::string const& phase);
     void Advance(size_t steps = 1);
     void Finish();
+
+    void Note(std::string const& message);
 
     /// Told to the host at once and kept for the report.
     void Warn(std::string const& message);

@@ -49,6 +49,7 @@ Primvar RefinePrimvar(Far::TopologyRefiner const& refiner, Primvar const& primva
 
 /// Refined vertices at their limit. Vertices without a face that has one stay.
 std::vector<double> MoveToLimit(Scene const& fine, Job& job) {
+    job.Start("moving vertices to the limit");
     auto const refiner = far_ext::CreateRefiner(fine.cage);
     auto const surface = NamingMesh(fine.path, [&] { return eval::LimitSurface(*refiner); });
     return eval::EvaluateVertexLimits(surface, fine.positions, 3, eval::FaceTree::kLimitDepth,
@@ -91,6 +92,7 @@ void InheritFromFaces(Model const& model, std::vector<Index> const& baseFaces, S
 }
 
 Scene RefineAllButPositions(Model const& model, Far::TopologyRefiner const& refiner, Job& job) {
+    job.Start("refining attributes");
     Scene fine;
     fine.path = model.GetPath();
     fine.name = model.GetName();
@@ -103,8 +105,10 @@ Scene RefineAllButPositions(Model const& model, Far::TopologyRefiner const& refi
 }
 
 Scene RefineUniformly(Model const& model, RefineOptions const& options, Job& job) {
+    job.Start("refining topology");
     auto const refiner = MakeUniformRefiner(model.GetCage(), model.GetPath(), options.levels);
     Scene fine = RefineAllButPositions(model, *refiner, job);
+    job.Start("refining positions");
     fine.positions = model.GetPositions();
     for (int level = 1; level <= options.levels; ++level) {
         job.CheckStopped();

@@ -202,6 +202,8 @@ private:
         _report.levels.push_back(
             _cascade.Step(_rows, CountIterations(), Times(1.0 / _unit, given)));
         auto const& step = _report.levels.back();
+        _job.Note(fmt::format("level {}: {} unknowns, {} sweeps, residual {:.2g}", _level,
+                              step.unknowns, step.sweeps, step.residual));
         if (step.isMetricFrozen && !wasFrozen) {
             _job.Warn(
                 fmt::format("{}: from level {} on the filter keeps the metric of the level before: "
@@ -348,6 +350,7 @@ SmoothResult WatchCollapse(Model const& model, FilterWidths const& widths,
                                   ? kSuspiciousRatio
                                   : eval::kLeastRadiusRatio;
     if (GetRadiusRatio(result.report) >= suspicious) return result;
+    job.Start("measuring the critical width");
     double const factor = MeasureCriticalFactor(model, ScaledWidths(widths, 1.0), options, job);
     result.report.hasCollapsed |= factor < 1.0;
     if (result.report.hasCollapsed && options.onCollapse == OnCollapse::LimitWidth &&

@@ -287,7 +287,7 @@ TEST_F(BakeOptionsInTheFile, AreKnownOfEveryMap) {
 
 // A new option has to be told of above.
 TEST_F(BakeOptionsInTheFile, AreAllOptionsOfTheVerb) {
-    std::set<std::string> known{"--help", "--output"};
+    std::set<std::string> known{"--help", "--output", "--version"};
     for (Row const& row : kRows) known.insert(row.option);
     std::string const help = Limn({"bake", "--help"}).out;
     std::set<std::string> listed;

@@ -81,7 +81,7 @@ TEST_F(CliDifferential, ContradictionsAreStatus2) {
                   Words{"--rule", "loop", "--laplacian", "cotangent", "--solver", "cholesky"},
               "--solver cholesky: only the combinatorial"},
              {differential + Words{"--handle", "0", "--handle", "1"}, "handles 0 and 1"},
-             {{"--space", "other"}, "--space: other not in"},
+             {{"--space", "other"}, "--space: 'other' is not one of"},
              {{"--curve", "--edit", "x.json"}, "--edit means nothing with --curve"}}) {
         ExpectError(Refine(Mesh("icosa"), words), 2, says);
         EXPECT_FALSE(std::filesystem::exists(folder / "out.obj"));

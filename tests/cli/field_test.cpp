@@ -167,8 +167,8 @@ TEST_F(CliField, WhatIsWrongIsNamed) {
     refuse({cube}, 2, "at least one of");
     refuse({cube, "--source", "8", "--sink", "0"}, 3, "vertex 8 does not exist; there are 0 to 7");
     refuse({cube, "--vortex", "-1"}, 3, "face -1 does not exist");
-    refuse({cube, "--source", "x"}, 2, "--source: 'x' is not a number");
-    refuse({cube, "--source", "1:nan"}, 2, "'nan' is not a number");
+    refuse({cube, "--source", "x"}, 2, "--source: 'x' is no whole number");
+    refuse({cube, "--source", "1:nan"}, 2, "'nan' is no number");
     refuse({cube, "--source", "1:2", "--sink", "3"}, 3, "add up to 1, not 0");
     refuse({cube, "--vortex", "1"}, 3, "--balance");
     refuse({cube, "--harmonic", "1"}, 3, "1 coefficients; the surface has 0 generators");

@@ -156,7 +156,7 @@ TEST_F(CliFit, UsageErrorsAreStatus2) {
         ExpectError(Limn(Words{verb, icosa, "-o", folder / output} + more), 2, says);
     };
     refuse("fit", "a.stl", {}, ".obj or .ply");
-    refuse("fit", "a.obj", {"--method", "magic"}, "--method: 'magic' is none of");
+    refuse("fit", "a.obj", {"--method", "magic"}, "--method: 'magic' is not one of");
     refuse("fit", "a.obj", {"--tolerance", "0"}, "--tolerance");
     refuse("fit", "a.obj", {"--alpha", "2"}, "--alpha");
     refuse("fit", "a.obj", {"--alpha", "0.5", "--scheme", "loop"}, "of the catmark scheme");

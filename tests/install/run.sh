@@ -39,6 +39,13 @@ while IFS= read -r line; do
 done <page.txt >printed.txt
 diff page.txt printed.txt
 
+for file in share/man/man1/limn.1 share/bash-completion/completions/limn \
+    share/fish/vendor_completions.d/limn.fish share/zsh/site-functions/_limn \
+    share/doc/limn/LICENSE share/doc/limn/docs/command-line.md; do
+    test -s "prefix/$file"
+done
+limn completion bash | cmp - prefix/share/bash-completion/completions/limn
+
 consumer
 evaluator
 { version && limn --version; } | awk '{ print $1 }' | uniq | wc -l |

@@ -49,6 +49,25 @@ TEST(Job, TellsStartAndEndOfAPhase) {
     EXPECT_TRUE(last.isFinished);
 }
 
+TEST(Job, TellsPhasesAndNotesInTheOrderOfTheWork) {
+    std::vector<std::string> heard;
+    auto const hear = [&](std::string const& text) { heard.push_back(text); };
+    Job job({.onPhase = hear, .onNote = hear});
+    job.Start("reading");
+    job.Start("baking", 2);
+    job.Note("tile 1001");
+    job.Finish();
+    job.Start("writing");
+    EXPECT_EQ(heard, (std::vector<std::string>{"reading", "baking", "tile 1001", "writing"}));
+}
+
+TEST(Job, TellsNoProgressOfAPhaseWithoutSteps) {
+    Listener listener;
+    Job job(listener.MakeHost());
+    job.Start("reading");
+    EXPECT_TRUE(listener.progress.empty());
+}
+
 TEST(Job, TellsProgressOfManyThreadsForwardOnlyAndAtMostTwentyTimesASecond) {
     Listener listener;
     Job job(listener.MakeHost());

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "engine/cli/options/choices.h"
 #include "far_ext/enum_words.h"
 
 namespace limn::cli {
@@ -15,12 +16,16 @@ namespace limn::cli {
 template <class Target, class Value, size_t N>
 CLI::Option* AddWordOption(CLI::App& verb, std::string const& flag, Target& target,
                            EnumWords<Value, N> const& words, std::string const& help) {
-    auto* const option = verb.add_option_function<std::string>(
-        flag, [&target, &words](std::string const& word) { target = words.Parse(word); }, help);
+    auto const parse = [&target, &words, flag](std::string const& word) {
+        auto const value = words.Find(word);
+        if (!value) RefuseChoice(flag, word, words.List());
+        target = *value;
+    };
+    auto* const option = verb.add_option_function<std::string>(flag, parse, help);
     for (auto const& row : words.rows) {
         if (target == row.value) option->default_str(row.word);
     }
-    return option->check(CLI::IsMember(words.List()));
+    return option->type_name(JoinChoices(words.List()));
 }
 
 }  // namespace limn::cli

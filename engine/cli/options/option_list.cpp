@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/cli/options/option_list.h"
+
+#include "engine/cli/options/choices.h"
+
+namespace limn::cli {
+
+namespace {
+
+OptionEntry::Value FindValue(CLI::Option const& option, OptionEntry const& entry) {
+    if (option.get_items_expected_max() == 0) return OptionEntry::Value::None;
+    if (!entry.words.empty()) return OptionEntry::Value::Words;
+    bool const isNumber =
+        entry.placeholder.starts_with("INT") || entry.placeholder.starts_with("FLOAT");
+    return isNumber ? OptionEntry::Value::Number : OptionEntry::Value::Other;
+}
+
+OptionEntry Describe(CLI::Option const& option) {
+    OptionEntry entry;
+    if (!option.get_snames().empty()) entry.shortFlag = "-" + option.get_snames()[0];
+    if (!option.get_lnames().empty()) entry.longFlag = "--" + option.get_lnames()[0];
+    entry.placeholder = option.get_type_name();
+    entry.help = option.get_description();
+    entry.group = option.get_group();
+    entry.words = SplitChoices(entry.placeholder);
+    entry.value = FindValue(option, entry);
+    entry.isList = option.get_delimiter() != '\0';
+    if (entry.IsPositional()) entry.placeholder = option.get_name();
+    return entry;
+}
+
+}  // namespace
+
+std::string OptionEntry::JoinFlags() const {
+    return shortFlag.empty() || longFlag.empty() ? shortFlag + longFlag
+                                                 : shortFlag + ", " + longFlag;
+}
+
+std::vector<OptionEntry> ListOptions(CLI::App const& app) {
+    std::vector<OptionEntry> options;
+    for (CLI::Option const* const option : app.get_options()) options.push_back(Describe(*option));
+    return options;
+}
+
+std::vector<CLI::App const*> ListVerbs(CLI::App const& app) {
+    return app.get_subcommands([](CLI::App const*) { return true; });
+}
+
+std::vector<OptionEntry> ListCommonOptions(CLI::App const& app) {
+    auto options = ListOptions(*ListVerbs(app).at(0));
+    std::erase_if(options, [](OptionEntry const& option) { return !option.IsCommon(); });
+    return options;
+}
+
+std::vector<std::string> ListFlags(std::vector<OptionEntry> const& options) {
+    std::vector<std::string> flags;
+    for (OptionEntry const& option : options) {
+        for (std::string const& flag : {option.shortFlag, option.longFlag}) {
+            if (!flag.empty()) flags.push_back(flag);
+        }
+    }
+    return flags;
+}
+
+}  // namespace limn::cli

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Command lines as people type them, right and nearly right.
+
+#include <gtest/gtest.h>
+
+#include "engine/cli/options/option_list.h"
+#include "engine/cli/parser.h"
+#include "support/cli.h"
+#include "support/errors.h"
+
+namespace limn {
+namespace {
+
+using namespace test::cli;
+using cli::OptionEntry;
+
+std::string Refusal(Words const& words) {
+    return test::RefusalOf([&] { cli::Parser().Parse(words); });
+}
+
+TEST(Typing, UnknownVerbsAndOptionsAreToldWithTheNearest) {
+    auto const expect = [](Words const& words, std::string const& says) {
+        EXPECT_TRUE(Contains(Refusal(words), says)) << Refusal(words);
+    };
+    expect({"bkae", "a.obj"}, "no verb 'bkae'; did you mean bake?");
+    expect({"help", "mesure"}, "no verb 'mesure'; did you mean measure?");
+    expect({"bake", "a.obj", "--sise", "64"}, "bake: no option '--sise'; did you mean --size?");
+    expect({"bake", "a.obj", "--sise=64"}, "bake: no option '--sise'; did you mean --size?");
+    expect({"bake", "a.obj", "--ouput", "a.exr", "--maps", "mean"}, "did you mean --output?");
+    expect({"bake", "a.obj", "-size", "64"}, "bake: no option '-size'; did you mean --size?");
+    expect({"bake", "a.obj", "-output", "a.exr"}, "no option '-output'; did you mean --output?");
+    expect({"info", "a.obj", "--frobnicate"}, "info: no option '--frobnicate' (limn info --help");
+    expect({"info", "a.obj", "b.obj"}, "info: 'b.obj' is one argument too many");
+    expect({"--threads", "4", "info"}, "no option '--threads' before the verb");
+    expect({"info", "a.obj", "--scheme", "catmrk"}, "did you mean catmark?");
+    expect({"bake", "--maps", "mean"}, "(limn bake --help tells more)");
+}
+
+TEST(Typing, HelpOfAVerbIsTheSameBothWays) {
+    EXPECT_EQ(Limn({"help"}).out, Limn({"--help"}).out);
+    for (std::string const& verb : ListVerbs())
+        EXPECT_EQ(Limn({"help", verb}).out, Limn({verb, "--help"}).out);
+}
+
+TEST(Typing, VersionIsTheSameEverywhere) {
+    Outcome const outcome = Limn({"version"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(Limn({"--version"}).out, outcome.out);
+    for (std::string const& verb : ListVerbs())
+        EXPECT_EQ(Limn({verb, "--version"}).out, outcome.out);
+}
+
+/// Calls `check(verb, option)` for every option that takes numbers.
+template <class Check>
+void ForEachNumberOption(Check check) {
+    cli::Parser const parser;
+    size_t count = 0;
+    for (CLI::App const* verb : cli::ListVerbs(parser.GetApp())) {
+        for (OptionEntry const& option : cli::ListOptions(*verb)) {
+            if (option.value != OptionEntry::Value::Number) continue;
+            check(verb->get_name(), option.longFlag);
+            ++count;
+        }
+    }
+    EXPECT_GT(count, 40u);
+}
+
+TEST(Typing, EveryNumberOptionQuotesWhatIsNone) {
+    ForEachNumberOption([](std::string const& verb, std::string const& flag) {
+        std::string const text = flag == "--view" ? "abc,abc,abc" : "abc";
+        std::string const refusal = Refusal({verb, flag, text});
+        EXPECT_TRUE(refusal.starts_with(flag + ": 'abc' is no ")) << refusal;
+        EXPECT_TRUE(Contains(refusal, "number")) << refusal;
+    });
+}
+
+TEST(Typing, TextsWithNumbersQuoteTheirPartThatIsNone) {
+    auto const expect = [](Words const& words, std::string const& says) {
+        ExpectError(Limn(words), 2, says);
+    };
+    std::string const mesh = Shape("catmark_cube");
+    Words const bake{"bake", mesh, "-o", "a.exr", "--maps", "mean"};
+    expect(bake + Words{"--size", "abc"}, "--size: 'abc' is no number of texels from 1 to 65536");
+    expect(bake + Words{"--tiles", "1001,x"}, "--tiles: 'x' is no whole number from 1001 to 9999");
+    expect(bake + Words{"--encode", "1,x"}, "--encode: 'x' is no number");
+    expect(bake + Words{"--audit", "--seam-bound", "mean=x"}, "--seam-bound: 'x' is no number");
+    Words const field{"field", mesh, "-o", "a.obj"};
+    for (std::string const flag : {"--source", "--sink", "--vortex"}) {
+        expect(field + Words{flag, "1.5"}, flag + ": '1.5' is no whole number");
+        expect(field + Words{flag, "1:x"}, flag + ": 'x' is no number");
+    }
+    expect(field + Words{"--harmonic", "1,x"}, "--harmonic: 'x' is no number");
+}
+
+TEST(Typing, SizesTakeK) {
+    test::TemporaryFolder const folder;
+    Outcome const outcome =
+        Limn({"bake", test::ScenePath("spot/spot.obj"), "-o", folder / "a.exr", "--maps",
+              "position", "--size", "1kx16", "--quiet", "--report", folder / "r.json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    json const output = ReadJson(folder / "r.json")["outputs"][0];
+    EXPECT_EQ(output["width"], 1024);
+    EXPECT_EQ(output["height"], 16);
+}
+
+TEST(Typing, BakesHelpSaysWhatARendererMustKnow) {
+    std::string const help = Limn({"bake", "--help"}).out;
+    for (char const* part : {"corners-plus1", "Keep Corners, Junctions", "(T, n x T, n)",
+                             "point + value * n", "point + vector"})
+        EXPECT_TRUE(Contains(help, part)) << part;
+}
+
+}  // namespace
+}  // namespace limn
