@@ -61,8 +61,8 @@ TEST(Reliability, EveryTestThatIsNamedExists) {
                 source = test::ReadText(path);
             }
             std::string const name = (*at)[2];
-            EXPECT_TRUE(std::regex_search(source, std::regex("\\b" + name + "\\b")))
-                << name << "\n" << line;
+            EXPECT_TRUE(std::regex_search(source, std::regex("\\b" + name + "\\b"))) << name << "\n"
+                                                                                     << line;
         }
     }
 }

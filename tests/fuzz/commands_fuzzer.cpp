@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // End to end, as from a shell: bytes choose the words of a command line and the meshes they name.
-// Whatever they are, the exit status is one of those that are promised, never that of a fault within.
+// Whatever they are, the exit status is one of those that are promised, never that of a fault
+// within.
 
 #include <cstdio>
 #include <filesystem>
@@ -32,15 +33,48 @@ struct Verb {
 
 Verb const kVerbs[] = {
     {{"bake", "mesh", "-o@/{map}.<UDIM>.exr", "--size=16"},
-     {"--maps=mean,normal", "--maps=curvature", "--maps=position", "--maps=noise", "--maps=stretch",
-      "--maps=overlap", "--maps=bands", "--maps=displacement", "--maps=tension", "--maps=field",
-      "--maps=all", "--against=other", "--rest=other", "--field=@/edges.csv", "--size=8x32",
-      "--tiles=1001", "--tiles=1001-1003", "--samples=2", "--padding=2", "--half", "--half=normal",
-      "--compression=piz", "--compression=none", "--mip", "--coverage", "--audit",
-      "--audit-bound=1", "--seam-bound=normal=1", "--encode=2,0.5", "--vector", "--space=tangent",
-      "--space=uv", "--normalize", "--groups=skin", "--noise-octaves=2", "--noise-seed=7",
-      "--noise-ramp=#000000,#ffffff", "--skip-existing", "--bands=3", "-o@/{group}.{map}.exr",
-      "-o@/one.exr", "other"}},
+     {"--maps=mean,normal",
+      "--maps=curvature",
+      "--maps=position",
+      "--maps=noise",
+      "--maps=stretch",
+      "--maps=overlap",
+      "--maps=bands",
+      "--maps=displacement",
+      "--maps=tension",
+      "--maps=field",
+      "--maps=all",
+      "--against=other",
+      "--rest=other",
+      "--field=@/edges.csv",
+      "--size=8x32",
+      "--tiles=1001",
+      "--tiles=1001-1003",
+      "--samples=2",
+      "--padding=2",
+      "--half",
+      "--half=normal",
+      "--compression=piz",
+      "--compression=none",
+      "--mip",
+      "--coverage",
+      "--audit",
+      "--audit-bound=1",
+      "--seam-bound=normal=1",
+      "--encode=2,0.5",
+      "--vector",
+      "--space=tangent",
+      "--space=uv",
+      "--normalize",
+      "--groups=skin",
+      "--noise-octaves=2",
+      "--noise-seed=7",
+      "--noise-ramp=#000000,#ffffff",
+      "--skip-existing",
+      "--bands=3",
+      "-o@/{group}.{map}.exr",
+      "-o@/one.exr",
+      "other"}},
     {{"eval", "mesh", "--at=@/places.csv"},
      {"-o@/out.csv", "--evaluator=bfr", "--frames=other", "-o@/{frame}.csv"}},
     {{"refine", "mesh", "-o@/out.obj", "--levels=1"},
@@ -68,15 +102,27 @@ Verb const kVerbs[] = {
     {{"measure", "mesh"}, {"--surface=mesh", "-o@/out"}},
     {{"info", "mesh"}, {"--json"}}};
 
-std::vector<char const*> const kSharedOptions{
-    "--scheme=loop",       "--scheme=catmark",      "--scheme=bilinear", "--boundary=none",
-    "--boundary=edge-only", "--fvar=all",            "--fvar=none",       "--creases=chaikin",
-    "--triangles=smooth",  "--orientation=left",    "--weld=0",          "--weld=0.1",
-    "--precision=double",  "--report=@/report.json", "--verbose",         "--report=-",
-    "--progress=lines"};
+std::vector<char const*> const kSharedOptions{"--scheme=loop",
+                                              "--scheme=catmark",
+                                              "--scheme=bilinear",
+                                              "--boundary=none",
+                                              "--boundary=edge-only",
+                                              "--fvar=all",
+                                              "--fvar=none",
+                                              "--creases=chaikin",
+                                              "--triangles=smooth",
+                                              "--orientation=left",
+                                              "--weld=0",
+                                              "--weld=0.1",
+                                              "--precision=double",
+                                              "--report=@/report.json",
+                                              "--verbose",
+                                              "--report=-",
+                                              "--progress=lines"};
 
-char const* const kStrangeValues[] = {"nan",  "-1",  "1e999", "",    "0",       "99999999999999999999",
-                                      "0x10", "1,2", "2k",    "inf", "\xff\xfe", "a b"};
+char const* const kStrangeValues[] = {
+    "nan",  "-1",  "1e999", "",    "0",        "99999999999999999999",
+    "0x10", "1,2", "2k",    "inf", "\xff\xfe", "a b"};
 
 /// Puts a folder's path in place of '@'.
 std::string Expand(std::string_view word, std::string const& folder) {
@@ -84,6 +130,18 @@ std::string Expand(std::string_view word, std::string const& folder) {
     for (size_t at = text.find('@'); at != text.npos; at = text.find('@', at + folder.size()))
         text.replace(at, 1, folder);
     return text;
+}
+
+/// Adds a word; one of the same option, as "-o@/a" or "--size=2", gives way.
+void Say(std::vector<std::string>& words, std::string word) {
+    auto const getOption = [](std::string const& w) {
+        return w.substr(0, w.starts_with("-o") ? 2 : w.find('='));
+    };
+    auto const same = std::ranges::find(words, getOption(word), getOption);
+    if (same == words.end())
+        words.push_back(std::move(word));
+    else
+        *same = std::move(word);
 }
 
 std::vector<std::string> ChooseWords(Choices& choices, std::string const& folder) {
@@ -96,7 +154,7 @@ std::vector<std::string> ChooseWords(Choices& choices, std::string const& folder
         size_t const value = word.find('=');
         if (value != word.npos && choices.TakeOneIn(16))
             word = word.substr(0, value + 1) + choices.Pick(kStrangeValues);
-        words.push_back(std::move(word));
+        Say(words, std::move(word));
     }
     words.emplace_back("--threads=1");
     return words;
@@ -130,15 +188,18 @@ void WriteInputs(test::TemporaryFolder const& folder) {
     folder.Write("edit.json", R"({"curvature": [{"vertex": 0, "factor": 1.5}]})");
 }
 
-/// Requires a status that is promised, and removes what the run has written.
-void RequireStatus(int status, test::TemporaryFolder const& folder,
-                   std::vector<std::string> const& inputs) {
+/// Requires a status that is promised and no files that should not be there, and removes what the
+/// run has written.
+void RequireOutcome(int status, bool isBake, test::TemporaryFolder const& folder,
+                    std::vector<std::string> const& inputs) {
     Require(status == 0 || (status >= 2 && status <= 5), "a run ends with 0 or with 2 to 5");
+    // Files of a bake that were complete before a fault stay.
+    bool const mayHaveWritten = status == 0 || status == 4 || (isBake && status != 2);
     for (std::string const& name : folder.List()) {
-        bool const isInput = std::ranges::find(inputs, name) != inputs.end();
-        Require(status == 0 || status == 4 || isInput || name.starts_with("report"),
-                "what fails leaves nothing behind");
-        if (!isInput) fs::remove_all(folder / name);
+        if (std::ranges::find(inputs, name) != inputs.end()) continue;
+        Require(!name.ends_with(".tmp"), "a run leaves no temporary");
+        Require(mayHaveWritten || name == "report.json", "what fails leaves nothing behind");
+        fs::remove_all(folder / name);
     }
 }
 
@@ -150,7 +211,8 @@ void RunOne(Choices& choices) {
     }();
     std::vector<std::string> const words = ChooseWords(choices, folder.GetPath());
     ChosenMeshes meshes(choices);
-    RequireStatus(cli::RunCommand(words, meshes), folder, inputs);
+    int const status = cli::RunCommand(words, meshes);
+    RequireOutcome(status, words[0] == "bake", folder, inputs);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a fuzzer of this folder is: a program that takes bytes and ends, loudly, where something that
-// limn promises does not hold. With libFuzzer it makes up its bytes, with replay.cpp it reads them
-// from files.
+// What a fuzzer of this folder is: a program that takes bytes and ends, loudly, where something
+// that limn promises does not hold. With libFuzzer it makes up its bytes, with replay.cpp it reads
+// them from files.
 #pragma once
 
 #include <cstddef>

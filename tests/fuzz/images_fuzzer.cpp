@@ -35,9 +35,9 @@ void LookUp(std::string const& path) {
 
 void ReadPicture(std::string const& path) {
     auto const image = engine::ReadFirstChannel(path);
-    Require(image.values.size() ==
-                static_cast<size_t>(image.width) * static_cast<size_t>(image.height),
-            "an image has a value per pixel");
+    Require(
+        image.values.size() == static_cast<size_t>(image.width) * static_cast<size_t>(image.height),
+        "an image has a value per pixel");
 }
 
 }  // namespace

@@ -261,9 +261,9 @@ void ChooseRules(Choices& choices, far_ext::ControlMesh& cage) {
     cage.scheme = choices.Pick({isTriangular ? Sdc::SCHEME_LOOP : Sdc::SCHEME_CATMARK,
                                 Sdc::SCHEME_CATMARK, Sdc::SCHEME_BILINEAR});
     using Options = Sdc::Options;
-    cage.options.SetVtxBoundaryInterpolation(choices.Pick({Options::VTX_BOUNDARY_EDGE_AND_CORNER,
-                                                           Options::VTX_BOUNDARY_EDGE_ONLY,
-                                                           Options::VTX_BOUNDARY_NONE}));
+    cage.options.SetVtxBoundaryInterpolation(
+        choices.Pick({Options::VTX_BOUNDARY_EDGE_AND_CORNER, Options::VTX_BOUNDARY_EDGE_ONLY,
+                      Options::VTX_BOUNDARY_NONE}));
     cage.options.SetFVarLinearInterpolation(
         choices.Pick({Options::FVAR_LINEAR_CORNERS_PLUS1, Options::FVAR_LINEAR_CORNERS_PLUS2,
                       Options::FVAR_LINEAR_CORNERS_ONLY, Options::FVAR_LINEAR_BOUNDARIES,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// main of a fuzzer without libFuzzer: takes the files that are named, and those of folders that are.
+// main of a fuzzer without libFuzzer: takes the files that are named, and those of folders that
+// are.
 
 #include <algorithm>
 #include <cstdio>

@@ -28,7 +28,8 @@ engine::Model MakeCube() {
     scene.name = "cube";
     scene.cage.numVertices = 8;
     scene.cage.faceSizes.assign(6, 4);
-    scene.cage.faceVertices = {0, 1, 3, 2, 2, 3, 5, 4, 4, 5, 7, 6, 6, 7, 1, 0, 1, 7, 5, 3, 6, 0, 2, 4};
+    scene.cage.faceVertices = {0, 1, 3, 2, 2, 3, 5, 4, 4, 5, 7, 6,
+                               6, 7, 1, 0, 1, 7, 5, 3, 6, 0, 2, 4};
     scene.positions = {0, 0, 1, 1, 0, 1, 0, 1, 1, 1, 1, 1, 0, 1, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0};
     return engine::Model::Build(std::move(scene));
 }
@@ -70,8 +71,7 @@ void ReadEdit(std::string const& path) {
     for (auto const& factor : edit.factors)
         Require(std::isfinite(factor.factor), "factors are numbers");
     for (auto const& rotation : edit.rotations) {
-        double const length =
-            std::hypot(rotation.axis[0], rotation.axis[1], rotation.axis[2]);
+        double const length = std::hypot(rotation.axis[0], rotation.axis[1], rotation.axis[2]);
         Require(std::isfinite(rotation.degrees) && length > 0.0, "a rotation has an axis");
     }
 }

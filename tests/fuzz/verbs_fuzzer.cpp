@@ -112,8 +112,7 @@ void Evaluate(Model const& model, Choices& choices, Job& job) {
         s.push_back(choices.Pick({0.0, 0.25, 0.5, 1.0, 1e-9, choices.TakeShare()}));
         t.push_back(choices.Pick({0.0, 0.25, 0.5, 1.0, 1e-9, choices.TakeShare()}));
     }
-    auto const values =
-        engine::EvaluateLimit(model, {faces, s, t}, Orientation::Right, job);
+    auto const values = engine::EvaluateLimit(model, {faces, s, t}, Orientation::Right, job);
     Hull const hull(model.GetPositions());
     for (size_t i = 0; i < faces.size(); ++i) {
         if (!values.hasLimit[i]) continue;
@@ -149,9 +148,8 @@ void Fit(Model const& model, Choices& choices, Job& job) {
     engine::FitOptions options{.tolerance = choices.Pick({1e-6, 1e-3, 1e-9, 1e-12}),
                                .maxIterations = choices.Pick({100, 1, 1000})};
     using Method = eval::SolveMethod;
-    options.method =
-        choices.Pick({Method::Automatic, Method::Progressive, Method::Weighted, Method::Chebyshev,
-                      Method::ConjugateGradients, Method::Direct});
+    options.method = choices.Pick({Method::Automatic, Method::Progressive, Method::Weighted,
+                                   Method::Chebyshev, Method::ConjugateGradients, Method::Direct});
     options.alpha = choices.Pick({0.0, 0.0, 0.5, 1.0});
     options.keepsTopology = choices.TakeBool();
     auto const result = engine::FitToLimit(model, options, job);
@@ -227,15 +225,14 @@ void Smooth(Model const& model, Choices& choices, Job& job) {
     engine::SmoothOptions options{.levels = choices.TakeInt(1, 2)};
     if (choices.TakeBool()) options.refinement = engine::SmoothRefinement::Bisect;
     if (choices.TakeBool()) options.boundary = far_ext::BoundaryRule::Natural;
-    options.solver =
-        choices.Pick({eval::CascadeSolver::ConjugateGradients, eval::CascadeSolver::Exact,
-                      eval::CascadeSolver::Jacobi});
+    options.solver = choices.Pick({eval::CascadeSolver::ConjugateGradients,
+                                   eval::CascadeSolver::Exact, eval::CascadeSolver::Jacobi});
     if (options.solver == eval::CascadeSolver::Jacobi) options.stop = engine::SweepsOnFinest{2};
     options.constraint =
         choices.Pick({engine::SmoothConstraint::None, engine::SmoothConstraint::Volume,
                       engine::SmoothConstraint::Graph});
-    options.onCollapse = choices.Pick({engine::OnCollapse::Stop, engine::OnCollapse::LimitWidth,
-                                       engine::OnCollapse::KeepResult});
+    options.onCollapse = choices.Pick(
+        {engine::OnCollapse::Stop, engine::OnCollapse::LimitWidth, engine::OnCollapse::KeepResult});
     options.keepsCreases = choices.TakeBool();
     if (choices.TakeOneIn(4)) options.precision = Precision::Float;
     auto const result = engine::Smooth(model, ChooseWidths(model, choices), options, job);
@@ -288,8 +285,8 @@ void MeasureSurface(Model const& model, Choices& choices, Job& job) {
 void RefineInDifferentialSpace(Model const& model, Choices& choices, Job& job) {
     engine::DifferentialOptions options{.levels = choices.TakeInt(0, 2)};
     if (choices.TakeOneIn(4)) options.rule = far_ext::SubdivisionRule::Butterfly;
-    options.laplacian = choices.Pick({engine::Laplacian::Combinatorial,
-                                      engine::Laplacian::Cotangent, engine::Laplacian::Mesh});
+    options.laplacian = choices.Pick(
+        {engine::Laplacian::Combinatorial, engine::Laplacian::Cotangent, engine::Laplacian::Mesh});
     options.dirMagLevels = choices.TakeInt(0, 1);
     options.spatialLevels = choices.TakeInt(0, 1);
     if (choices.TakeBool()) options.solver = engine::DifferentialSolver::Cholesky;
@@ -306,10 +303,10 @@ void RefineInDifferentialSpace(Model const& model, Choices& choices, Job& job) {
 
 engine::BakeOptions ChooseBake(Model const& model, Choices& choices) {
     static constexpr char const* kMaps[] = {
-        "mean",        "normal",   "position",  "curvature", "principal-direction",
-        "shape-index", "stretch",  "overlap",   "gaussian",  "curvedness",
-        "bands",       "noise",    "k1",        "k2",        "displacement",
-        "tension",     "field",    "primvar:color"};
+        "mean",        "normal",  "position",     "curvature", "principal-direction",
+        "shape-index", "stretch", "overlap",      "gaussian",  "curvedness",
+        "bands",       "noise",   "k1",           "k2",        "displacement",
+        "tension",     "field",   "primvar:color"};
     engine::BakeOptions options;
     options.maps = {choices.Pick(kMaps)};
     if (choices.TakeOneIn(3)) options.maps.emplace_back(choices.Pick(kMaps));
@@ -319,8 +316,8 @@ engine::BakeOptions ChooseBake(Model const& model, Choices& choices) {
     options.padding = choices.TakeInt(0, 3);
     options.hasMips = choices.TakeOneIn(4);
     options.isVector = choices.TakeBool();
-    options.space = choices.Pick({engine::VectorSpace::Object, engine::VectorSpace::Tangent,
-                                  engine::VectorSpace::UV});
+    options.space = choices.Pick(
+        {engine::VectorSpace::Object, engine::VectorSpace::Tangent, engine::VectorSpace::UV});
     options.isNormalized = choices.TakeBool();
     options.noise.octaves = choices.TakeInt(1, 2);
     options.bands = choices.TakeInt(2, 4);
@@ -376,8 +373,8 @@ Model ChooseModel(Choices& choices) {
 
 void RunVerb(Choices& choices) {
     static constexpr void (*kVerbs[])(Model const&, Choices&, Job&) = {
-        Bake, Evaluate, Refine, Fit,     Filter,   Smooth, Design, MeasureSurface,
-        Bake, MorphTo,  Bake,   WeldTwice, Describe, RefineInDifferentialSpace};
+        Bake,           Evaluate, Refine,  Fit,  Filter,    Smooth,   Design,
+        MeasureSurface, Bake,     MorphTo, Bake, WeldTwice, Describe, RefineInDifferentialSpace};
     auto* const verb = choices.Pick(kVerbs);
     Model const model = ChooseModel(choices);
     // Some are interrupted, at whichever time they ask.
