@@ -43,6 +43,37 @@ check_sanitizers() {
     )
 }
 
+# fuzz NAME SECONDS: runs a fuzzer on what it has kept from earlier runs, the seeds, and all that ever
+# failed. What it finds it writes to build/fuzz.
+fuzz() {
+    log="build/fuzz/$1.log"
+    dictionary="build/fuzz/$1.dict"
+    kept="build/fuzz/kept/$1"
+    mkdir -p "$kept"
+    cat /dev/null tests/fuzz/dictionaries/"$1"/*.dict >"$dictionary" 2>/dev/null || true
+    say "fuzzing $1 for $2 seconds"
+    set -- "$1" "$2" "$kept" "tests/fuzz/seeds/$1"
+    if [ -d "tests/fuzz/failed/$1" ]; then set -- "$@" "tests/fuzz/failed/$1"; fi
+    name=$1 seconds=$2
+    shift 2
+    if ! TMPDIR=/dev/shm "build/fuzz/tests/fuzz/${name}_fuzzer" -max_total_time="$seconds" -timeout=20 \
+        -rss_limit_mb=3072 -close_fd_mask=3 -print_final_stats=1 -dict="$dictionary" \
+        -artifact_prefix="build/fuzz/$name." "$@" >"$log" 2>&1; then
+        found=$(sed -n 's/.*Test unit written to //p' "$log" | tail -n 1)
+        die "the fuzzer of $name has found ${found:-something}; once it is mended, keep it in tests/fuzz/failed/$name" "$log" 40
+    fi
+    say "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log") inputs, nothing found"
+}
+
+# shellcheck disable=SC2154 # ./check has read $fuzz_seconds
+check_fuzz() {
+    in_folder fuzz tools build_target fuzzers -DLIMN_FUZZ=ON -DCMAKE_UNITY_BUILD=ON \
+        -DCMAKE_CXX_COMPILER=clang++-19 -DCMAKE_CXX_FLAGS_RELEASE='-O1 -g1'
+    fuzzers='readers tables images verbs commands'
+    share=$((fuzz_seconds / 5))
+    for fuzzer in $fuzzers; do fuzz "$fuzzer" "$share"; done
+}
+
 # list_sources PATTERN...: of the files in the folders of code, those whose names fit.
 list_sources() {
     for pattern in "$@"; do find far_ext eval engine tests bench examples -name "$pattern"; done

@@ -214,12 +214,11 @@ Verb AddRefine(CLI::App& app) {
         "JSON, all keys optional, vertices 0-based: {\"curvature\": [{\"vertex\": 3, "
         "\"factor\": 1.5}], \"rotate\": [{\"vertex\": 7, \"axis\": [0,0,1], "
         "\"degrees\": 20}], \"filter\": \"polarise\"}"));
-    differential(
-        verb->add_option(
-            "--tolerance", a->tolerance,
-            "of what remains of the differential coordinates, over their length (default "
-            "1e-8, with --precision double 1e-12; with --laplacian cotangent or mesh 0.01)"))
-        ->check(CLI::Range(1e-15, 1.0));
+    differential(AddNumberOption(
+        *verb, "--tolerance", a->tolerance,
+        "of what remains of the differential coordinates, over their length (default "
+        "1e-8, with --precision double 1e-12; with --laplacian cotangent or mesh 0.01)",
+        {1e-15, 1.0}));
     differential(verb->add_flag("--keep-result", a->keepsResult,
                                 "write what a solver that missed its tolerance has"));
     verb->footer(

@@ -49,7 +49,10 @@ MeshFormat const& ChooseFormat(std::string const& path, std::string_view bytes) 
 
 Scene ReadMesh(std::string const& path) {
     InputFile const file(path);
-    std::string_view const bytes = file.GetBytes();
+    return ParseMesh(path, file.GetBytes());
+}
+
+Scene ParseMesh(std::string const& path, std::string_view bytes) {
     if (bytes.empty()) throw Error(ErrorCode::BadMesh, fmt::format("{}: the file is empty", path));
     RefuseForeignFile(bytes, path, "OBJ, PLY or OFF");
     MeshFormat const& format = ChooseFormat(path, bytes);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "engine/scene/scene.h"
 
@@ -12,5 +13,11 @@ namespace limn::engine {
 /// \throws Error  Io if the file cannot be read; BadMesh, as "FILE:LINE: ...", if its content is
 ///                wrong
 Scene ReadMesh(std::string const& path);
+
+/// The same for a file's bytes.
+///
+/// \param path    what messages call it, and what its ending is taken from
+/// \throws Error  BadMesh
+Scene ParseMesh(std::string const& path, std::string_view bytes);
 
 }  // namespace limn::engine

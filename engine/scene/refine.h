@@ -25,7 +25,8 @@ struct RefineOptions {
 /// The result has OpenSubdiv's vertex order, refined UVs and primvars, decayed creases and corners,
 /// holes and groups of the parents.
 ///
-/// \throws Error  BadOption; TooLarge where the refined mesh would pass 2^31 indices
+/// \throws Error  BadOption; TooLarge where the refined mesh would pass 2^31 indices; as
+///                far_ext::BuildButterfly
 /// \throws Stopped
 Scene RefineUniformly(Model const& model, RefineOptions const& options, Job& job);
 

@@ -107,6 +107,10 @@ private:
 }  // namespace
 
 SparseRows BuildButterfly(Far::TopologyRefiner const& refiner, int level) {
+    if (refiner.GetSchemeType() != Sdc::SCHEME_LOOP) {
+        throw Error(ErrorCode::Unsupported,
+                    "the Butterfly rule needs triangles and the scheme loop");
+    }
     Level const coarse = refiner.GetLevel(level - 1);
     CheckBoundary(coarse);
     for (Index edge = 0; edge < coarse.GetNumEdges(); ++edge) {

@@ -18,7 +18,8 @@ namespace limn::far_ext {
 ///           -1)/16. A wing that would lie across a boundary edge (p, c) of triangle (p, q, c) is p
 ///           + c - q.
 /// \param refiner  of triangles by the Loop scheme, refined uniformly to `level` at least
-/// \throws Error   BadMesh: an edge with more than two faces, or a vertex where boundaries meet
+/// \throws Error   BadMesh: an edge with more than two faces, or a vertex where boundaries meet.
+///                 Unsupported: another scheme
 /// Source    [Zhu11] Sec. 3.2 (modified Butterfly)
 SparseRows BuildButterfly(Far::TopologyRefiner const& refiner, int level);
 

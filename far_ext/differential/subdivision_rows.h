@@ -15,7 +15,7 @@ enum class SubdivisionRule {
 
 /// S of one step: vertices of `level` x vertices of `level` - 1. Rows add up to 1.
 ///
-/// \throws Error  BadMesh: BuildButterfly's
+/// \throws Error  as BuildButterfly
 SparseRows BuildSubdivisionRows(Far::TopologyRefiner const& refiner, int level,
                                 SubdivisionRule rule);
 

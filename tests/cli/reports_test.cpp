@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <regex>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -101,14 +102,13 @@ TEST_F(Reports, ListTheOptionsOfTheVerbsHelp) {
         json const options = Report()["effective_options"];
         std::string const help = Limn({verb, "--help"}).out;
         std::regex const flag("\n  (?:-\\w,)?--([a-z-]+)");
-        size_t count = 0;
-        for (std::sregex_iterator at(help.begin(), help.end(), flag), end; at != end; ++at) {
-            std::string const name = (*at)[1];
-            if (name == "help") continue;
+        std::set<std::string> names;
+        for (std::sregex_iterator at(help.begin(), help.end(), flag), end; at != end; ++at)
+            names.insert((*at)[1]);
+        for (char const* answered : {"help", "version"}) EXPECT_EQ(names.erase(answered), 1u);
+        for (std::string const& name : names)
             EXPECT_TRUE(options.contains(name)) << verb << " --" << name;
-            ++count;
-        }
-        EXPECT_EQ(options.size(), count) << verb;
+        EXPECT_EQ(options.size(), names.size()) << verb;
     }
 }
 

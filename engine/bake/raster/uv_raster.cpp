@@ -22,6 +22,9 @@ constexpr double kUndecidedDepth = 0.5 * kCoveredTexels;
 // There a point beside the sample decides, in a direction that no layout has its edges in.
 constexpr double kAsideX = 3.0 * kCoveredTexels, kAsideY = 1.2599 * kCoveredTexels;
 constexpr int kMaxDepth = 30;  // pieces below 2^-30 of a face are linear to any precision
+// So are pieces that small. Where a face stays irregular along an edge, only this ends the search
+// for a sample on it: pieces multiply with depth, and all of a face that is a point are there.
+constexpr double kLinearTexels = 1e-6;
 
 /// Where the run of texels from `begin` on that lie inside and have no owner ends.
 int FindEndOfHits(eval::Whereabouts const* where, Index const* owner, int begin, int end) {
@@ -172,14 +175,15 @@ void UVRaster::RasterNode(int node, int depth, TexelHits& hits) {
     auto const u = _tree.GetBounds(node, 0), v = _tree.GetBounds(node, 1);
     double minX = _grid.ToX(u[0]), maxX = _grid.ToX(u[1]), minY = _grid.ToY(v[1]),
            maxY = _grid.ToY(v[0]);
+    bool const isLinear =
+        depth >= kMaxDepth || (maxX - minX < kLinearTexels && maxY - minY < kLinearTexels);
     double const slack = 2 * kCoveredTexels;
     minX = std::max(minX - slack, static_cast<double>(_firstColumn));
     maxX = std::min(maxX + slack, static_cast<double>(_lastColumn));
     minY = std::max(minY - slack, static_cast<double>(_strip->firstRow));
     maxY = std::min(maxY + slack, _strip->firstRow + _strip->numRows - 1.0);
     if (std::ceil(minX) > std::floor(maxX) || std::ceil(minY) > std::floor(maxY)) return;
-    if (depth >= kMaxDepth)
-        return RasterPiece(_tree.GetLinearLeaf(node), _tree.GetDomain(node), hits);
+    if (isLinear) return RasterPiece(_tree.GetLinearLeaf(node), _tree.GetDomain(node), hits);
     for (int child = 0; child < 4; ++child)
         RasterNode(_tree.GetChild(node, child), depth + 1, hits);
 }

@@ -64,5 +64,13 @@ TEST(Butterfly, ThreeFacesAtAnEdgeAreRefused) {
     EXPECT_NE(test::RefusalOf([&] { far_ext::BuildButterfly(*refiner, 1); }), "");
 }
 
+// Its rows are those of a Loop refinement, which has other vertices than this one.
+TEST(Butterfly, AnotherSchemeIsRefused) {
+    auto const scene =
+        test::MakeScene({0, 0, 0, 1, 0, 0, 0, 1, 0}, {{0, 1, 2}}, Sdc::SCHEME_CATMARK);
+    auto const refiner = test::MakeRefiner(scene, 1);
+    EXPECT_EQ(test::CodeOf([&] { far_ext::BuildButterfly(*refiner, 1); }), ErrorCode::Unsupported);
+}
+
 }  // namespace
 }  // namespace limn

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/bake/raster/uv_raster.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -269,6 +270,15 @@ TEST(UVRaster, CollapsedTextureCoordinatesCoverNothing) {
     auto const covering = CoverAndCheck(scene, 32);
     EXPECT_EQ(covering.numHits, 0u);
     EXPECT_EQ(Count(covering.strip.failed), 0u);
+}
+
+// With linear boundaries a face is irregular all along its edges, however deep one looks; in one
+// point, a texel's centre, no piece of it could be left out.
+TEST(UVRaster, AFaceThatIsATexelsCentreIsNoEndlessSearch) {
+    engine::Scene scene = MakePlane(2, 0.1, 0.9);
+    scene.cage.options.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_BOUNDARIES);
+    std::ranges::fill(scene.uvs, 0.5);
+    EXPECT_EQ(CoverAndCheck(scene, 33).numHits, 0u);
 }
 
 }  // namespace
