@@ -99,7 +99,7 @@ private:
 
     /// Where a vertex property goes: position 0-2, texture 3-4, primvar channel, or nowhere.
     struct Target {
-        enum { Nowhere, Position, Texture, Value } kind = Nowhere;
+        enum class Kind { Nowhere, Position, Texture, Value } kind = Kind::Nowhere;
         int channel = 0;
         size_t primvar = 0;
         double scale = 1.0;
@@ -109,12 +109,12 @@ private:
         std::string const& name = property.name;
         if (property.countType || name == "nx" || name == "ny" || name == "nz") return {};
         for (int c = 0; c < 3; ++c) {
-            if (name == std::string(1, "xyz"[c])) return {Target::Position, c};
+            if (name == std::string(1, "xyz"[c])) return {Target::Kind::Position, c};
         }
         for (auto const& [u, v] : {std::pair{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}}) {
             if (element.Has(u) && element.Has(v) && (name == u || name == v)) {
                 _hasVertexUVs = true;
-                return {Target::Texture, name == v};
+                return {Target::Kind::Texture, name == v};
             }
         }
         static char const* const kColours[] = {"red", "green", "blue", "alpha"};
@@ -125,9 +125,9 @@ private:
             double const scale = property.type == PlyType::Uint8    ? 1.0 / 255
                                  : property.type == PlyType::Uint16 ? 1.0 / 65535
                                                                     : 1.0;
-            return {Target::Value, c, primvar, scale};
+            return {Target::Kind::Value, c, primvar, scale};
         }
-        return {Target::Value, 0, FindPrimvar(name, 1)};
+        return {Target::Kind::Value, 0, FindPrimvar(name, 1)};
     }
 
     size_t FindPrimvar(std::string const& name, int numChannels) {
@@ -158,16 +158,16 @@ private:
     }
 
     void ReadVertexValue(PlyProperty const& property, Target const& target, size_t vertex) {
-        if (target.kind == Target::Nowhere) return SkipProperty(property);
+        if (target.kind == Target::Kind::Nowhere) return SkipProperty(property);
         double const value = _values.Read(property.type, property.name.c_str());
         size_t const channel = static_cast<size_t>(target.channel);
         if (!(std::abs(value) <= TextScanner::kLargest)) {
             _values.Refuse(fmt::format("property '{}' is {}; a number up to {:g} is needed",
                                        property.name, value, TextScanner::kLargest));
         }
-        if (target.kind == Target::Position) {
+        if (target.kind == Target::Kind::Position) {
             _scene.positions[3 * vertex + channel] = value;
-        } else if (target.kind == Target::Texture) {
+        } else if (target.kind == Target::Kind::Texture) {
             _scene.uvs[2 * vertex + channel] = value;
         } else {
             Primvar& primvar = _scene.primvars[target.primvar];

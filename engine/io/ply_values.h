@@ -106,7 +106,7 @@ private:
     T Take() {
         if (_bytes.size() < sizeof(T)) Refuse("the file ends here; it seems cut short");
         char raw[sizeof(T)];
-        std::memcpy(raw, _bytes.data(), sizeof raw);
+        std::copy_n(_bytes.begin(), sizeof raw, raw);
         _bytes.remove_prefix(sizeof raw);
         if (_format == PlyHeader::Format::BigEndian) std::reverse(raw, raw + sizeof raw);
         T value;
