@@ -36,7 +36,7 @@ public:
             Follow(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, way, sum, count);
         float const mean = sum / static_cast<float>(count);
         float const grey = 0.5f + kContrast * (mean - 0.5f);
-        return static_cast<uint8_t>(std::clamp(grey, 0.02f, 1.0f) * 255.0f + 0.5f);
+        return static_cast<uint8_t>(std::lround(std::clamp(grey, 0.02f, 1.0f) * 255.0f));
     }
 
 private:

@@ -135,8 +135,7 @@ void GaussBonnetAuditor::SumFace(Worker& worker, ExtraordinaryDiscs const& discs
     worker.sampler.Bind(face);
     for (int domain = 0; domain < _input.surface.GetNumDomains(face); ++domain) {
         auto const& [texels, s, t] = hits[domain];
-        auto const add = [&, &s = s, &t = t](std::span<int const> samples, float const* p,
-                                             size_t stride) {
+        auto const add = [&](std::span<int const> samples, float const* p, size_t stride) {
             for (size_t i = 0; i < samples.size(); ++i) {
                 int const sample = samples[i];
                 auto const at = [&](int c) {
@@ -226,7 +225,7 @@ void GaussBonnetAuditor::FindWorstFace(ExtraordinaryDiscs const& discs,
         _input.job.CheckStopped();
         tree.Bind(face);
         double integral = 0.0;
-        auto const add = [&, face = face](eval::SurfacePlace const& place, double weight) {
+        auto const add = [&](eval::SurfacePlace const& place, double weight) {
             auto const x = eval::EvaluateSample(tree, place.domain, place.s, place.t);
             integral += weight * x.curvature.gaussian * x.tangentS.cross(x.tangentT).norm() *
                         discs.GetTexelShare(face, place.domain, place.s, place.t);

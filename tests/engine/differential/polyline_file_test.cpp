@@ -23,7 +23,7 @@ std::string MakePoints() {
 class Polylines : public testing::Test {
 protected:
     std::vector<eval::Curve> Read(std::string const& lines) const {
-        return engine::ReadPolylines(_folder.Write("a.obj", MakePoints() + lines)).curves;
+        return engine::ReadPolylines(folder.Write("a.obj", MakePoints() + lines)).curves;
     }
     /// Each curve as the numbers of its points; a closed one ends with a "+".
     std::vector<std::string> Describe(std::string const& lines) const {
@@ -37,11 +37,11 @@ protected:
         return curves;
     }
     std::string Refuse(std::string const& lines) const {
-        return test::RefusalOf([&] { Read(lines); }).substr((_folder / "a.obj").size());
+        return test::RefusalOf([&] { Read(lines); }).substr((folder / "a.obj").size());
     }
 
     using Texts = std::vector<std::string>;
-    test::TemporaryFolder const _folder;
+    test::TemporaryFolder const folder;
 };
 
 TEST_F(Polylines, OneLineIsOneCurve) {
@@ -115,13 +115,13 @@ TEST_F(Polylines, TooFewPointsAreRefused) {
 TEST_F(Polylines, OtherFilesAndIndicesAreRefused) {
     EXPECT_NE(Refuse("l 1 11\n").find(":11: a polyline's vertex index is '11'"), std::string::npos);
     EXPECT_NE(Refuse("").find("no polylines"), std::string::npos);
-    std::string const usd = _folder.Write("usd.obj", "#usda 1.0\n");
+    std::string const usd = folder.Write("usd.obj", "#usda 1.0\n");
     EXPECT_EQ(test::RefusalOf([&] { engine::ReadPolylines(usd); }),
               usd + ": looks like USD: OBJ is needed");
 }
 
 TEST_F(Polylines, JoinedLinesAndAnyLineEndAreRead) {
-    std::string const path = _folder.Write("b.obj", "v 0 0 0\rv 1 0 0\rv 2 0 0\rl 1 \\\r2 3\r");
+    std::string const path = folder.Write("b.obj", "v 0 0 0\rv 1 0 0\rv 2 0 0\rl 1 \\\r2 3\r");
     auto const curves = engine::ReadPolylines(path).curves;
     ASSERT_EQ(curves.size(), 1u);
     EXPECT_EQ(curves[0].points.size(), 3u);
@@ -130,8 +130,8 @@ TEST_F(Polylines, JoinedLinesAndAnyLineEndAreRead) {
 TEST_F(Polylines, WhatIsReadIsWritten) {
     auto const curves = Read("v 0.1 0.2 0.3\nl 1 2 11 1\nl 4 5\nl 5 6\n");
     ASSERT_EQ(curves.size(), 2u);
-    engine::WritePolylines(_folder / "out.obj", curves, Precision::Double);
-    auto const again = engine::ReadPolylines(_folder / "out.obj").curves;
+    engine::WritePolylines(folder / "out.obj", curves, Precision::Double);
+    auto const again = engine::ReadPolylines(folder / "out.obj").curves;
     ASSERT_EQ(again.size(), 2u);
     EXPECT_TRUE(again[0].isClosed);
     EXPECT_FALSE(again[1].isClosed);
@@ -144,7 +144,7 @@ TEST_F(Polylines, ManyEdgesTakeTimeInProportion) {
     std::string text;
     for (int i = 0; i < kCount; ++i) text += "v 0 0 0\n";
     for (int i = kCount - 1; i >= 1; --i) text += fmt::format("l {} {}\n", i, i + 1);
-    auto const curves = engine::ReadPolylines(_folder.Write("many.obj", text)).curves;
+    auto const curves = engine::ReadPolylines(folder.Write("many.obj", text)).curves;
     ASSERT_EQ(curves.size(), 1u);
     EXPECT_EQ(curves[0].points.size(), static_cast<size_t>(kCount));
 }

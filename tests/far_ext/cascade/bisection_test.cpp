@@ -86,8 +86,7 @@ TEST(Bisection, LeavesNoHangingVertex) {
     for (auto const& [name, scene] : GetTriangleMeshes()) {
         double length = -1.0;
         Index euler = 0;
-        auto const measure = [&, name = name](CascadeMesh const& mesh,
-                                              std::vector<double> const& points) {
+        auto const measure = [&](CascadeMesh const& mesh, std::vector<double> const& points) {
             double sum = 0.0;
             auto const edges = CountFacesAtEdges(mesh);
             for (auto const& [edge, count] : edges) {
@@ -120,9 +119,8 @@ TEST(Bisection, HalvesTheAreasOfTheTrianglesItComesFrom) {
         int pass = 0;
         ForAllPasses(
             scene, 5,
-            [&, name = name, scene = scene](auto const&, auto const&, CascadeMesh const& fine,
-                                            std::vector<double> const& points,
-                                            Bisection const& bisection) {
+            [&](auto const&, auto const&, CascadeMesh const& fine,
+                std::vector<double> const& points, Bisection const& bisection) {
                 ++pass;
                 ASSERT_EQ(static_cast<Index>(bisection.GetBaseFaces().size()), fine.GetNumFaces());
                 std::vector<double> sums(scene.cage.faceSizes.size(), 0.0);
@@ -170,9 +168,8 @@ TEST(Bisection, HasAtMostFourShapesInATriangle) {
         int pass = 0;
         ForAllPasses(
             scene, 6,
-            [&, name = name, scene = scene](auto const&, auto const&, CascadeMesh const& fine,
-                                            std::vector<double> const& points,
-                                            Bisection const& bisection) {
+            [&](auto const&, auto const&, CascadeMesh const& fine,
+                std::vector<double> const& points, Bisection const& bisection) {
                 if (++pass < 6) return;
                 std::vector<std::set<std::array<int, 2>>> shapes(
                     scene.cage.faceSizes.size());  // by the two shorter sides to the longest
@@ -198,8 +195,7 @@ TEST(Bisection, CutsTheLongestEdgesAndThenThoseOppositeTheNewestVertices) {
     for (auto const& [name, scene] : GetTriangleMeshes()) {
         int pass = 0;
         ForAllPasses(scene, 2,
-                     [&, name = name, scene = scene](
-                         CascadeMesh const& coarse, std::vector<double> const& coarsePoints,
+                     [&](CascadeMesh const& coarse, std::vector<double> const& coarsePoints,
                          CascadeMesh const& fine, auto const&, auto const&) {
                          ++pass;
                          std::set<std::array<Index, 2>> cut, expected;
@@ -239,8 +235,8 @@ TEST(Bisection, CutsTheLongestEdgesAndThenThoseOppositeTheNewestVertices) {
 TEST(Bisection, PutsNewVerticesInTheOrderOfTheirEdges) {
     for (auto const& [name, scene] : GetTriangleMeshes()) {
         ForAllPasses(scene, 3,
-                     [&, name = name](CascadeMesh const& coarse, auto const&,
-                                      CascadeMesh const& fine, auto const&, auto const&) {
+                     [&](CascadeMesh const& coarse, auto const&, CascadeMesh const& fine,
+                         auto const&, auto const&) {
                          std::map<std::set<Index>, int> numbers;
                          for (size_t face = 0; face < coarse.faces.size(); face += 3) {
                              for (size_t k = 0; k < 3; ++k) {
@@ -275,19 +271,18 @@ TEST(Bisection, CarriesCreasesAndCorners) {
         for (size_t i = 0; i < scene.cage.creaseVertexPairs.size(); i += 2)
             length += FindLength(scene.positions, scene.cage.creaseVertexPairs[i],
                                  scene.cage.creaseVertexPairs[i + 1]);
-        ForAllPasses(
-            scene, 4,
-            [&, name = name, scene = scene](auto const&, auto const&, CascadeMesh const& fine,
-                                            std::vector<double> const& points, auto const&) {
-                auto const edges = CountFacesAtEdges(fine);
-                double sum = 0.0;
-                for (auto const& [a, b] : fine.creases) {
-                    EXPECT_TRUE(edges.count({std::min(a, b), std::max(a, b)})) << name;
-                    sum += FindLength(points, a, b);
-                }
-                EXPECT_NEAR(sum, length, 1e-12 * length) << name;
-                EXPECT_EQ(fine.corners, scene.cage.cornerVertices) << name;
-            });
+        ForAllPasses(scene, 4,
+                     [&](auto const&, auto const&, CascadeMesh const& fine,
+                         std::vector<double> const& points, auto const&) {
+                         auto const edges = CountFacesAtEdges(fine);
+                         double sum = 0.0;
+                         for (auto const& [a, b] : fine.creases) {
+                             EXPECT_TRUE(edges.count({std::min(a, b), std::max(a, b)})) << name;
+                             sum += FindLength(points, a, b);
+                         }
+                         EXPECT_NEAR(sum, length, 1e-12 * length) << name;
+                         EXPECT_EQ(fine.corners, scene.cage.cornerVertices) << name;
+                     });
     }
     EXPECT_GT(numCreased, 5);
 }
