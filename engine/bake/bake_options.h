@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/bake/maps/map_options.h"
-#include "engine/bake/preview_range.h"
+#include "engine/bake/maps/preview_range.h"
 #include "engine/images/exr_writer.h"
 
 namespace limn::engine {

@@ -89,6 +89,20 @@ std::string ExpandPattern(std::string const& pattern, OutputName const& name) {
     return path;
 }
 
+std::string ExpandWithoutTile(std::string const& pattern, OutputName const& name) {
+    constexpr std::string_view kParting = "._-";
+    std::string stem;
+    ForEachPart(pattern, [&](std::string_view text, bool isToken) {
+        if (!isToken || !HasUdimToken(text)) {
+            stem += ExpandPattern(std::string(text), name);
+        } else if (!stem.empty() && kParting.find(stem.back()) != kParting.npos) {
+            stem.pop_back();
+        }
+    });
+    stem.resize(stem.size() - GetEnding(pattern).size());
+    return stem.empty() || stem.ends_with('/') ? stem : stem + '.';
+}
+
 void CheckTokens(std::string const& pattern) {
     ForEachPart(pattern, [&](std::string_view text, bool isToken) {
         if (!isToken || ExpandToken(text, {.tile = UdimTile{}.GetNumber()})) return;

@@ -23,6 +23,10 @@ struct OutputName {
 /// `pattern` with its tokens replaced. A map's or group's name becomes one part of a path.
 std::string ExpandPattern(std::string const& pattern, OutputName const& name);
 
+/// The beginning of names that stand for all tiles: `pattern` without its ending, the tile's token
+/// and what parts this from the name: "out/head.mean." of "out/head.{map}.<UDIM>.exr".
+std::string ExpandWithoutTile(std::string const& pattern, OutputName const& name);
+
 inline bool HasMapToken(std::string_view pattern) {
     return pattern.find("{map}") != std::string_view::npos;
 }

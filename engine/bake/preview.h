@@ -7,17 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "engine/bake/maps/map.h"
+#include "engine/bake/maps/map_colours.h"
 #include "engine/bake/mip_chain.h"
-#include "engine/bake/preview_range.h"
-#include "engine/images/colour_scale.h"
-#include "engine/images/picture.h"
-#include "engine/images/value_histogram.h"
 
 namespace limn::engine {
 
-/// A picture of a map, a pixel per texel, padding included: signed maps in diverging colours,
-/// others in sequential ones, vectors as colours, a flow as streaks along it.
+/// A picture of a map, a pixel per texel, padding included, in the map's colours; of a flow,
+/// streaks along it.
 ///
 /// Order    rows are added as they are baked; then the picture is drawn row by row from the values
 ///          that the finished file has. What is kept in between does not grow with the image: how
@@ -32,9 +28,9 @@ public:
 
     void Add(int row, TexelRowView const& texels);
 
-    /// Which of the map's channels are drawn, and whether their values are asked for at all.
-    int GetNumShown() const { return IsColour() ? 3 : 1; }
-    bool NeedsValues() const { return _map.range != RangeKind::Flow; }
+    /// How many of the map's channels are drawn, and whether their values are asked for at all.
+    int GetNumShown() const { return _colours.GetNumShown(); }
+    bool NeedsValues() const { return _colours.HasColours(); }
     int GetWidth() const { return _width; }
     int GetHeight() const { return _height; }
 
@@ -44,28 +40,14 @@ public:
     /// \param values  of the row, per channel that is shown
     void DrawRow(int row, std::array<float const*, 3> const& values, uint8_t* rgb) const;
 
-    /// A picture of its own: what is shown, in which unit, and which colour is which value.
-    ///
-    /// \param of  what the map is of: "spot 1001"
-    Picture DrawLegend(std::string const& of) const;
+    MapColours const& GetColours() const { return _colours; }
 
 private:
-    bool IsColour() const;
-    PreviewRange::Rule GetRule() const;
-    float Decode(float value) const;
-    ColourScale FindScale(int channel) const;
-    Colour FindColour(int x, std::array<float const*, 3> const& values) const;
     void AddFlow(int row, TexelRowView const& texels);
-    void DrawFlow();
-    std::vector<std::string> Describe(std::string const& of) const;
 
-    MapTraits const _map;
+    MapColours _colours;
     int _firstChannel, _width, _height;
-    std::optional<PreviewRange> _range;
-    Encoding _encoding;
-    std::array<ValueHistogram, 3> _values, _magnitudes;  // per channel shown
     std::vector<std::vector<int>> _edgesOfRow;  // where texels with and without values take turns
-    std::array<ColourScale, 3> _scales;
     // of a flow: cells of _factor x _factor texels, which streaks need in memory
     int _factor, _flowWidth, _flowHeight;
     std::vector<float> _flow;                  // [cell][2]

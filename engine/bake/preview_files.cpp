@@ -130,7 +130,8 @@ std::vector<std::unique_ptr<AtomicFile>> PreviewFiles::Write(std::string const& 
         };
         WritePngRows(open(named.name + kPicture), named.preview.GetWidth(),
                      named.preview.GetHeight(), fillRow, texts);
-        if (_hasLegends) WritePng(open(named.name + kLegend), named.preview.DrawLegend(of), texts);
+        if (_hasLegends)
+            WritePng(open(named.name + kLegend), named.preview.GetColours().DrawLegend(of), texts);
     }
     return files;
 }

@@ -13,6 +13,7 @@
 #include "engine/bake/left_temporaries.h"
 #include "engine/bake/maps/map_table.h"
 #include "engine/bake/output_names.h"
+#include "engine/bake/pictures/map_picture.h"
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
 #include "engine/cli/option_names.h"
@@ -22,6 +23,7 @@
 #include "engine/cli/options/word_option.h"
 #include "engine/images/exr_names.h"
 #include "engine/io/edge_values.h"
+#include "engine/io/file.h"
 #include "far_ext/error.h"
 
 namespace limn::cli {
@@ -34,7 +36,8 @@ struct BakeArguments {
     std::vector<std::string> meshes, tiles, seamBounds;
     std::string size = "2048", against, rest, fieldPath, encode, noiseRamp, previewRange, half;
     std::optional<std::string> origin;
-    bool hasAudit = false;
+    bool hasAudit = false, hasPicture = false;
+    std::vector<double> view{1.0, 0.6, 0.8};
     engine::AuditBounds bounds;
     engine::BakeOptions options;
 };
@@ -124,6 +127,16 @@ constexpr MapFlag kMapFlags[] = {{"--against", "against"},     {"--rest", "rest"
                                  {"--noise-gain", "noise"},    {"--noise-seed", "noise"},
                                  {"--noise-ramp", "noiseRamp"}};
 
+/// Refuses pictures that cannot be: of what has no colours, or is no file to look up.
+void RefusePictures(BakeArguments const& a) {
+    if (!a.hasPicture) return;
+    if (a.options.space == engine::VectorSpace::UV)
+        throw Error(ErrorCode::BadOption,
+                    "--picture: a flow in texture coordinates has no colours; --space object has");
+    if (engine::GetEnding(a.options.pattern) != ".exr")
+        throw Error(ErrorCode::BadOption, "--picture looks maps up in their files; -o names none");
+}
+
 /// Refuses flags that would change nothing.
 void RefuseWithoutEffect(CLI::App const& verb, std::vector<std::string> const& maps) {
     if (!std::ranges::all_of(maps, engine::IsMapName)) return;  // that is the error to tell
@@ -142,8 +155,12 @@ void RefuseWithoutEffect(CLI::App const& verb, std::vector<std::string> const& m
         if (verb.count("--noise-ramp"))
             RefuseEach(verb, {"--normalize"}, "has no effect with --noise-ramp");
     }
-    if (verb.count("--preview") == 0)
-        RefuseEach(verb, {"--preview-range", "--preview-legend"}, "needs --preview");
+    if (verb.count("--preview") == 0) {
+        RefuseEach(verb, {"--preview-legend"}, "needs --preview");
+        if (verb.count("--picture") == 0)
+            RefuseEach(verb, {"--preview-range"}, "needs --preview or --picture");
+    }
+    if (verb.count("--picture") == 0) RefuseEach(verb, {"--view"}, "needs --picture");
     if (verb.count("--audit") == 0)
         RefuseEach(verb, {"--audit-bound", "--seam-bound"}, "needs --audit");
 }
@@ -269,8 +286,18 @@ std::vector<Bake> PlanBakes(BakeArguments const& a, engine::BakeOptions const& o
     return bakes;
 }
 
-/// Adds what belongs to the mesh's own bake, bakes, and audits. Returns the bounds missed, in
-/// words.
+/// Draws the pictures of a bake, or takes away those of an earlier one that it has replaced.
+void DrawPictures(BakeArguments const& a, engine::Model const& model,
+                  engine::BakeOptions const& options, engine::BakeReport const& report,
+                  Context& context) {
+    if (!a.hasPicture) return engine::RemoveMapPictures(model, options, report);
+    engine::PictureView const view{{a.view[0], a.view[1], a.view[2]}};
+    auto const paths = engine::WriteMapPictures(model, options, report, view, context.GetJob());
+    for (std::string const& path : paths) context.GetReport()["pictures"].push_back(path);
+}
+
+/// Adds what belongs to the mesh's own bake, bakes, draws, and audits. Returns the bounds missed,
+/// in words.
 std::vector<std::string> RunBake(BakeArguments const& a, Bake& bake,
                                  engine::AuditBounds const& bounds, Context& context) {
     auto const model = bake.model ? *bake.model : context.Load(bake.mesh);
@@ -280,6 +307,7 @@ std::vector<std::string> RunBake(BakeArguments const& a, Bake& bake,
     if (!a.rest.empty()) options.rest = context.Load(a.rest);
     auto const report = engine::Bake(model, options, context.GetJob());
     AddToReport(context.GetReport(), report);
+    DrawPictures(a, model, options, report, context);
     if (!a.hasAudit || report.outputs.empty()) return {};
     auto const audit = engine::Audit(model, options, report, bounds, context.GetJob());
     nlohmann::json json = ToJson(audit, report);
@@ -294,6 +322,7 @@ int Run(BakeArguments const& a, CLI::App const& verb, Context& context) {
     engine::CheckTokens(a.options.pattern);
     engine::RequireExrEnding(a.options.pattern);
     RefuseWithoutEffect(verb, a.options.maps);
+    RefusePictures(a);
     engine::BakeOptions const options = MakeOptions(a, context.GetCommon());
     engine::AuditBounds const bounds = ParseBounds(a);
     if (a.meshes.size() > 1 && a.options.pattern.find("{mesh}") == std::string::npos) {
@@ -304,8 +333,8 @@ int Run(BakeArguments const& a, CLI::App const& verb, Context& context) {
         context.GetJob().Warn(
             "the output's name has no {map}: all maps go into one file with a layer each");
     }
-    context.GetReport()->update(
-        {{"outputs", nlohmann::json::array()}, {"previews", nlohmann::json::array()}});
+    for (char const* list : {"outputs", "previews", "pictures"})
+        context.GetReport()[list] = nlohmann::json::array();
     std::vector<std::string> misses, written;
     for (Bake& bake : bakes) {
         bake.options.onOutput = [&](engine::BakeOutput const& output) {
@@ -351,8 +380,15 @@ void AddFileOptions(CLI::App& verb, BakeArguments& a) {
         "and beside it NAME.legend.png: map, mesh, unit, and which colour is which value");
     verb.add_option(
         "--preview-range", a.previewRange,
-        "A,B; p1 (1st to 99th percentile, the default of scalars); full; asinh "
+        "of previews and pictures: A,B; p1 (1st to 99th percentile, the default of scalars); full; "
+        "asinh "
         "(linear up to the median, logarithmic beyond); signed maps are 0 in the middle");
+    verb.add_flag("--picture", a.hasPicture,
+                  "also NAME.picture.png per map: the limit surface with the baked map on it");
+    AddNumberOption(verb, "--view", a.view,
+                    "of pictures: the side that is seen, x,y,z (default 1,0.6,0.8)")
+        ->delimiter(',')
+        ->expected(3);
     verb.add_option("--encode", a.encode, "S,O: write value * S + O");
 }
 

@@ -16,11 +16,13 @@ namespace limn::cli {
 namespace {
 
 struct MeasureArguments {
-    std::string mesh, prefix;
+    std::string mesh, prefix, range;
     engine::MeasuredSurface surface = engine::MeasuredSurface::Limit;
     std::vector<double> view{1.0, 0.6, 0.8};
     bool hasHighlight = false, hasPicture = false;
 };
+
+engine::MapTraits const kMean{.name = "mean", .units = "1/length"};
 
 nlohmann::json ToJson(engine::CurvatureStatistics const& statistics) {
     return {{"min", statistics.min},
@@ -57,6 +59,10 @@ int RunMeasure(MeasureArguments const& a, Context& context) {
         throw Error(ErrorCode::BadOption,
                     "--highlight and --picture write files; name their beginning with -o");
     }
+    if (!a.hasPicture && !a.range.empty())
+        throw Error(ErrorCode::BadOption, "--preview-range needs --picture");
+    std::optional<engine::PreviewRange> range;
+    if (!a.range.empty()) range = engine::PreviewRange::Parse(a.range);
     auto const model = context.Load(a.mesh);
     CommonOptions const& common = context.GetCommon();
     engine::Job& job = context.GetJob();
@@ -74,7 +80,7 @@ int RunMeasure(MeasureArguments const& a, Context& context) {
         engine::PictureView const view{{a.view[0], a.view[1], a.view[2]}};
         if (a.hasPicture)
             engine::WritePng(files.Open(a.prefix + ".mean.png"),
-                             engine::DrawValues(curved, "mean", view));
+                             engine::DrawValues(curved, kMean, view, range));
         if (a.hasHighlight)
             engine::WritePng(files.Open(a.prefix + ".highlight.png"),
                              engine::DrawHighlights(curved, view));
@@ -100,6 +106,9 @@ Verb AddMeasure(CLI::App& app) {
                    "also write PREFIX.highlight.png: highlight lines of the mesh");
     verb->add_flag("--picture", a->hasPicture,
                    "also write PREFIX.mean.png: the mesh in colours of mean curvature");
+    verb->add_option("--preview-range", a->range,
+                     "colours of the picture: A,B, p1 (default: 1st to 99th percentile of what is "
+                     "seen), full or asinh");
     AddNumberOption(*verb, "--view", a->view,
                     "pictures: the side that is seen, x,y,z (default 1,0.6,0.8)")
         ->delimiter(',')

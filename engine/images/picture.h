@@ -28,7 +28,10 @@ public:
     void Set(int x, int y, Colour const& colour);  ///< nothing outside the picture
     void SetGrey(size_t pixel, uint8_t grey);      ///< pixel = y * width + x
 
-    /// Writes ASCII text, white, 14 pixels high.
+    /// Puts another picture into this one, its upper left pixel at (x, y).
+    void Place(int x, int y, Picture const& other);
+
+    /// Writes ASCII text, white, 14 pixels high; some letters hang 4 lower.
     void Write(int x, int y, std::string const& text);
     static int GetTextWidth(std::string const& text) { return 12 * static_cast<int>(text.size()); }
 
@@ -36,5 +39,8 @@ private:
     int _width, _height;
     std::vector<uint8_t> _pixels;
 };
+
+/// One picture above another.
+Picture Stack(Picture const& above, Picture const& below);
 
 }  // namespace limn::engine

@@ -2,31 +2,30 @@
 #pragma once
 
 #include <array>
-#include <string>
+#include <optional>
 #include <vector>
 
+#include "engine/bake/maps/map_colours.h"
 #include "engine/images/picture.h"
+#include "engine/images/picture_view.h"
 #include "engine/scene/scene.h"
 
 namespace limn::engine {
 
-/// How to look at a mesh: from far away along a direction, with z (or y, looking along z) upwards.
-struct PictureView {
-    std::array<double, 3> from{1.0, 0.6, 0.8};  ///< the side that is seen
-    int size = 800;                             ///< pixels, width and height
-};
-
-/// Draws a mesh in the colours of a signed value per vertex (a primvar of one channel), with its
-/// range below.
+/// Draws a mesh in the colours of a primvar of one channel, between its vertices, with a legend
+/// below.
 ///
+/// \param map     the primvar's name, its units, and whether it is signed
+/// \param range   of the values that are seen; none: 1st to 99th percentile
 /// \throws Error  BadOption: no such primvar, or a view without a direction
-Picture DrawValues(Scene const& scene, std::string const& primvar, PictureView const& view);
+Picture DrawValues(Scene const& scene, MapTraits const& map, PictureView const& view,
+                   std::optional<PreviewRange> const& range = {});
 
 /// Draws a mesh flat shaded, each face by its own normal. \throws Error  as above
 Picture DrawShaded(Scene const& scene, PictureView const& view);
 
 /// Draws highlight lines, the reflections of parallel strip lights: where they kink, normals do;
-/// where they turn sharply, curvature jumps.
+/// where they turn sharply, curvature jumps. They measure nothing, so there is no legend.
 ///
 /// \throws Error  as above
 /// Source  [Zhu11] Sec. 4.3 and Fig. 13

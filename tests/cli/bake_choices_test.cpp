@@ -314,6 +314,7 @@ INSTANTIATE_TEST_SUITE_P(
         Effectless{
             "SeamBoundOfNoMap", {"--maps", "mean", "--audit", "--seam-bound", "k1=1"}, "not baked"},
         Effectless{"Range", {"--maps", "mean", "--preview-range", "p1"}, "needs --preview"},
+        Effectless{"View", {"--maps", "mean", "--view", "0,0,1"}, "needs --picture"},
         Effectless{"Legend", {"--maps", "mean", "--preview-legend"}, "needs --preview"}),
     [](auto const& instance) { return instance.param.name; });
 

@@ -87,6 +87,8 @@ std::vector<Row> const kRows{
     {"--preview", {"--preview"}, {}, "plain", Effect::None},
     {"--preview-legend", {"--preview", "--preview-legend"}, {}, "plain", Effect::None},
     {"--preview-range", {"--preview", "--preview-range", "full"}, {}, "plain", Effect::None},
+    {"--picture", {"--picture"}, {}, "plain", Effect::None},
+    {"--view", {"--picture", "--view", "0,0,1"}, {}, "plain", Effect::None},
     {"--audit", {"--audit"}, {}, "plain", Effect::None},
     {"--audit-bound", {"--audit", "--audit-bound", "9"}, {}, "plain", Effect::None},
     {"--seam-bound", {"--audit", "--seam-bound", "1e9"}, {}, "plain", Effect::None},

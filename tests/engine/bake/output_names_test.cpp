@@ -38,6 +38,17 @@ TEST(ExpandPattern, TakesTheSpellingsOfOtherPrograms) {
     }
 }
 
+TEST(ExpandWithoutTile, LeavesTheTileAndItsSeparatorOut) {
+    engine::OutputName const name{.map = "mean", .mesh = "spot"};
+    for (auto const& [pattern, stem] : {std::pair{"out/{mesh}.{map}.<UDIM>.exr", "out/spot.mean."},
+                                        {"{map}_%(UDIM)d.exr", "mean."},
+                                        {"<UVTILE>/{map}.EXR", "/mean."},
+                                        {"out/<UDIM>.exr", "out/"},
+                                        {"a.exr", "a."}}) {
+        EXPECT_EQ(engine::ExpandWithoutTile(pattern, name), stem) << pattern;
+    }
+}
+
 // A mesh may be called as it likes: what is put in is not looked at again.
 TEST(ExpandPattern, ReplacesNothingInWhatItHasPutIn) {
     EXPECT_EQ(ExpandPattern("{mesh}.{map}.<UDIM>.exr",

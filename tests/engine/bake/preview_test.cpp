@@ -241,7 +241,7 @@ Subject const kRamp{MakeTraits(RangeKind::Positive, 1), 256, 16,
                     [](int, int x, int) { return x < 128 ? 2.0 : 5.0; }};
 
 TEST(PreviewLegend, HasTwoLinesOfTextAndABarBetweenFigures) {
-    Picture const legend = Draw(kRamp).DrawLegend("spot 1001");
+    Picture const legend = Draw(kRamp).GetColours().DrawLegend("spot 1001");
     int const barY = legend.GetHeight() - 8 - 28;
     EXPECT_GT(CountPixels(legend, kWhite, 8, 28), 100);     // map and unit
     EXPECT_GT(CountPixels(legend, kWhite, 28, barY), 100);  // mesh and tile
@@ -255,7 +255,7 @@ TEST(PreviewLegend, HasTwoLinesOfTextAndABarBetweenFigures) {
 
 TEST(PreviewLegend, NamesWhatItIsOf) {
     auto const draw = [](Subject const& subject, std::string const& of) {
-        Picture const legend = Draw(subject).DrawLegend(of);
+        Picture const legend = Draw(subject).GetColours().DrawLegend(of);
         return std::vector<uint8_t>(
             legend.GetPixels(), legend.GetPixels() + 3 * legend.GetWidth() * legend.GetHeight());
     };
@@ -272,10 +272,11 @@ TEST(PreviewLegend, NamesWhatItIsOf) {
 TEST(PreviewLegend, HasNoBarWhereItWouldMeanNothing) {
     auto const heightOf = [](RangeKind range, int numChannels, double value) {
         return Draw({MakeTraits(range, numChannels), 8, 8, [=](int, int, int) { return value; }})
+            .GetColours()
             .DrawLegend("spot")
             .GetHeight();
     };
-    int const withBar = Draw(kRamp).DrawLegend("spot").GetHeight();
+    int const withBar = Draw(kRamp).GetColours().DrawLegend("spot").GetHeight();
     EXPECT_LT(heightOf(RangeKind::UnitVector, 3, 0.5), withBar);
     EXPECT_LT(heightOf(RangeKind::Line, 3, 0.5), withBar);
     EXPECT_LT(heightOf(RangeKind::Flow, 2, 0.5), withBar);

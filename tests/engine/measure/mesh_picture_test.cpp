@@ -80,7 +80,7 @@ TEST(MeshPicture, ValuesAreColouredFromVertexToVertex) {
     cube.primvars = {{"height", 1, {}}};
     for (size_t i = 0; i < 8; ++i)
         cube.primvars[0].values.push_back(static_cast<float>(cube.positions[3 * i + 1]));
-    auto const picture = engine::DrawValues(cube, "height", kFromFront);
+    auto const picture = engine::DrawValues(cube, {.name = "height"}, kFromFront);
     EXPECT_GT(picture.GetHeight(), 200);  // the legend
     for (int x : {20, 180}) {             // the same along a row, other ones from row to row
         EXPECT_EQ(At(picture, x, 40), At(picture, 100, 40));
@@ -93,9 +93,25 @@ TEST(MeshPicture, ValuesMustBeThere) {
     engine::Scene cube = test::MakeCube();
     cube.primvars = {{"colour", 3, std::vector<float>(24, 0.5f)}};
     for (char const* name : {"mean", "colour"}) {
-        EXPECT_EQ(test::CodeOf([&] { engine::DrawValues(cube, name, kFromFront); }),
+        EXPECT_EQ(test::CodeOf([&] { engine::DrawValues(cube, {.name = name}, kFromFront); }),
                   ErrorCode::BadOption)
             << name;
+    }
+}
+
+// Two meshes in one range can be compared: their legends are the same, and so are equal values.
+TEST(MeshPicture, ARangeIsShared) {
+    engine::Scene cube = test::MakeCube();
+    auto const range = engine::PreviewRange::Parse("-2,2");
+    auto const draw = [&](float value) {
+        cube.primvars = {{"height", 1, std::vector<float>(8, value)}};
+        return engine::DrawValues(cube, {.name = "height"}, kFromFront, range);
+    };
+    auto const one = draw(1.0f), two = draw(2.0f);
+    EXPECT_NE(At(one, 100, 100), At(two, 100, 100));
+    ASSERT_EQ(one.GetHeight(), two.GetHeight());
+    for (int y = 200; y < one.GetHeight(); ++y) {
+        for (int x = 0; x < one.GetWidth(); ++x) ASSERT_EQ(At(one, x, y), At(two, x, y));
     }
 }
 
@@ -103,6 +119,7 @@ TEST(MeshPicture, ValuesMustBeThere) {
 TEST(MeshPicture, HighlightsAreStripesOnWhatIsRound) {
     auto const flat =
         engine::DrawHighlights(test::MakeLattice(4, 4, Sdc::SCHEME_CATMARK), kFromFront);
+    EXPECT_EQ(flat.GetHeight(), 200) << "stripes have no range to tell";
     EXPECT_EQ(At(flat, 100, 50), At(flat, 60, 120));
     auto const sphere = engine::DrawHighlights(test::MakeQuadSphere(3), kFromFront);
     int numChanges = 0;

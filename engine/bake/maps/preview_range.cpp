@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/bake/preview_range.h"
+#include "engine/bake/maps/preview_range.h"
 
 #include <charconv>
 #include <cmath>
