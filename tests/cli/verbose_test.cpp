@@ -2,7 +2,8 @@
 //
 // What --verbose tells, and that it changes nothing else.
 
-#include <filesystem>
+#include <algorithm>
+#include <map>
 #include <regex>
 
 #include <gtest/gtest.h>
@@ -13,30 +14,61 @@ namespace limn {
 namespace {
 
 using namespace test::cli;
-namespace fs = std::filesystem;
 
-struct Run {
+struct VerbRun {
     std::string verb;
-    Words words;  // MESH and OUT/ stand for a mesh and the test's folder
+    Words words;  // MESH, PLACES and OUT/ stand for a mesh, a table and the test's folder
     Words phases;
 };
 
-void PrintTo(Run const& run, std::ostream* out) {
+void PrintTo(VerbRun const& run, std::ostream* out) {
     *out << run.verb;
 }
 
-class CliVerbose : public testing::TestWithParam<Run> {
+std::vector<VerbRun> const kRuns{
+    {"eval",
+     {"MESH", "--at", "PLACES", "-o", "OUT/a.csv"},
+     {"reading", "evaluating places", "writing"}},
+    {"info", {"MESH"}, {"reading", "topology", "describing"}},
+    {"bake",
+     {"MESH", "-o", "OUT/a.{map}.exr", "--maps", "mean,normal", "--size", "64", "--audit",
+      "--audit-bound", "1"},
+     {"reading", "preparing maps", "baking spot", "auditing spot"}},
+    {"refine",
+     {"MESH", "-o", "OUT/a.obj", "--space", "differential", "--solver", "cholesky"},
+     {"subdividing coordinates", "factorising", "solving", "writing"}},
+    {"refine", {"MESH", "-o", "OUT/a.obj", "--limit"}, {"refining positions", "moving"}},
+    {"measure", {"MESH", "-o", "OUT/a"}, {"measuring", "finding curvature", "writing"}},
+    {"fit",
+     {"MESH", "-o", "OUT/a.obj"},
+     {"building the limit matrix", "solving for positions", "certifying", "writing"}},
+    {"bands", {"MESH", "-o", "OUT/a", "--count", "2"}, {"filtering", "writing"}},
+    {"denoise", {"MESH", "-o", "OUT/a.obj"}, {"filtering", "writing"}},
+    {"sharpen", {"MESH", "-o", "OUT/a.obj"}, {"filtering", "writing"}},
+    {"morph", {"MESH", "MESH", "-o", "OUT/a", "--steps", "2"}, {"morphing", "writing"}},
+    {"smooth", {"MESH", "-o", "OUT/a.obj", "--levels", "1"}, {"smooth", "writing"}},
+    {"field",
+     {"MESH", "-o", "OUT/a.obj", "--source", "0", "--sink", "9"},
+     {"designing the field", "subdividing the field", "finding vectors", "writing"}}};
+
+class CliVerbose : public testing::TestWithParam<VerbRun> {
 protected:
     Outcome RunIn(test::TemporaryFolder const& folder, Words const& more) const {
         Words words{GetParam().verb};
         for (std::string const& word : GetParam().words) {
             if (word == "MESH")
                 words.push_back(test::ScenePath("spot/spot.obj"));
+            else if (word == "PLACES")
+                words.push_back(places);
             else
                 words.push_back(word.starts_with("OUT/") ? folder / word.substr(4) : word);
         }
         return Limn(words + more);
     }
+
+private:
+    test::TemporaryFolder inputs;
+    std::string const places = inputs.Write("places.csv", "face,s,t\n0,0.5,0.5\n");
 };
 
 /// "limn: factorising: 0.012 s"
@@ -64,30 +96,14 @@ TEST_P(CliVerbose, TellsPhasesAndSecondsAndChangesNoByteOfTheOutput) {
     EXPECT_FALSE(folder.List().empty() && outcome.out.empty()) << "nothing to compare";
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Of, CliVerbose,
-    testing::Values(
-        Run{"info", {"MESH"}, {"reading", "topology", "describing"}},
-        Run{"bake",
-            {"MESH", "-o", "OUT/a.{map}.exr", "--maps", "mean,normal", "--size", "64", "--audit",
-             "--audit-bound", "1"},
-            {"reading", "preparing maps", "baking spot", "auditing spot"}},
-        Run{"refine",
-            {"MESH", "-o", "OUT/a.obj", "--space", "differential", "--solver", "cholesky"},
-            {"subdividing coordinates", "factorising", "solving", "writing"}},
-        Run{"refine", {"MESH", "-o", "OUT/a.obj", "--limit"}, {"refining positions", "moving"}},
-        Run{"measure", {"MESH", "-o", "OUT/a"}, {"measuring", "finding curvature", "writing"}},
-        Run{"fit",
-            {"MESH", "-o", "OUT/a.obj"},
-            {"building the limit matrix", "solving for positions", "certifying", "writing"}},
-        Run{"bands", {"MESH", "-o", "OUT/a", "--count", "2"}, {"filtering", "writing"}},
-        Run{"denoise", {"MESH", "-o", "OUT/a.obj"}, {"filtering", "writing"}},
-        Run{"sharpen", {"MESH", "-o", "OUT/a.obj"}, {"filtering", "writing"}},
-        Run{"morph", {"MESH", "MESH", "-o", "OUT/a", "--steps", "2"}, {"morphing", "writing"}},
-        Run{"smooth", {"MESH", "-o", "OUT/a.obj", "--levels", "1"}, {"smooth", "writing"}},
-        Run{"field",
-            {"MESH", "-o", "OUT/a.obj", "--source", "0", "--sink", "9"},
-            {"designing the field", "subdividing the field", "finding vectors", "writing"}}));
+INSTANTIATE_TEST_SUITE_P(Of, CliVerbose, testing::ValuesIn(kRuns));
+
+TEST_F(Cli, VerboseIsTriedWithEveryVerb) {
+    for (std::string const& verb : ListVerbs())
+        EXPECT_TRUE(std::ranges::any_of(kRuns, [&](VerbRun const& run) {
+            return run.verb == verb;
+        })) << verb;
+}
 
 TEST_F(Cli, VerboseNamesTilesAndFiles) {
     Outcome const outcome =
