@@ -35,6 +35,7 @@ constexpr OptionName kOptionNames[] = {
     {"outputPattern", "-o"},
     {"path", "-o"},
     {"pattern", "-o"},
+    {"picture", "--picture"},
     {"precision", "--precision"},
     {"previewRange", "--preview-range"},
     {"refinement", "--refinement"},

@@ -132,10 +132,11 @@ Words ListInputs(Words const& command) {
     return inputs;
 }
 
-/// Whether a command has written a file, which may be one of several of a prefix.
+/// Whether a command has written a file, which may be one of several of a prefix or a table beside
+/// a mesh.
 bool IsWrittenBy(Words const& command, std::string const& file) {
-    std::string const output = Behind(command, "-o");
-    return Has(command, ">" + file) || (!output.empty() && file.starts_with(output));
+    std::string const stem = fs::path(Behind(command, "-o")).replace_extension().string();
+    return Has(command, ">" + file) || (!stem.empty() && file.starts_with(stem));
 }
 
 TEST(Pictures, EachHasTheCommandThatMakesItOnItsPage) {
