@@ -159,6 +159,7 @@ void MeasurePeaks() {
 }  // namespace
 }  // namespace limn::bench
 
+// NOLINTNEXTLINE(bugprone-exception-escape): what is thrown ends a bench, as it should
 int main(int argc, char** argv) {
     using namespace limn::bench;
     int const numRounds = GetNumRounds(argc, argv);

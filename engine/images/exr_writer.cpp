@@ -34,7 +34,7 @@ size_t ExrSpec::GetWordsPerTexel() const {
     return words;
 }
 
-std::string const& RequireSeeking(std::string const& path) {
+std::string RequireSeeking(std::string path) {
     if (FindOutputKind(path) == OutputKind::Stream) {
         throw Error(ErrorCode::BadOption,
                     fmt::format("'{}' is a pipe or a device, in which an EXR file cannot be "

@@ -91,7 +91,7 @@ private:
 ///
 /// \return        the path
 /// \throws Error  BadOption
-std::string const& RequireSeeking(std::string const& path);
+std::string RequireSeeking(std::string path);
 
 /// String attributes of an EXR file's header whose names start with `prefix`.
 ///

@@ -106,8 +106,11 @@ Glyph const& FindGlyph(char character) {
 
 std::array<uint8_t, 3> ToBytes(Colour const& colour) {
     std::array<uint8_t, 3> bytes;
-    for (size_t c = 0; c < 3; ++c)
+    for (size_t c = 0; c < 3; ++c) {
+        // lround is a call per channel; what it would mend, 0.5 less an ulp, is no colour.
+        // NOLINTNEXTLINE(bugprone-incorrect-roundings)
         bytes[c] = static_cast<uint8_t>(std::clamp(colour[c], 0.0f, 1.0f) * 255.0f + 0.5f);
+    }
     return bytes;
 }
 

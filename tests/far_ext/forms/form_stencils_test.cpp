@@ -22,7 +22,6 @@ namespace limn {
 namespace {
 
 using far_ext::AsMatrix;
-using far_ext::SparseRows;
 using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 double Largest(Matrix const& matrix) {
