@@ -88,8 +88,10 @@ Certificate Certify(Scene const& mesh, Far::TopologyRefiner const& refiner,
     Certificate certificate;
     double sum = 0.0;
     far_ext::Points const reached(limits.values), wanted(data);
-    size_t const count = wanted.GetCount();
-    for (size_t i = 0; i < count; ++i) {
+    size_t count = 0;
+    for (size_t i = 0; i < wanted.GetCount(); ++i) {
+        if (!limits.hasLimit[i]) continue;  // alpha moves it all the same
+        ++count;
         double const miss = (reached[i] - wanted[i]).norm() / size;
         sum += miss * miss;
         if (miss <= certificate.max && certificate.worstVertex >= 0) continue;

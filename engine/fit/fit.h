@@ -23,8 +23,8 @@ struct FitOptions {
 };
 
 /// How far the limit surface of the result, rounded as it is, passes from the vertices that were
-/// given, over the diagonal of their bounding box. Found without A: by refining towards each vertex
-/// (eval::EvaluateVertexLimits).
+/// given (of those that have a limit), over the diagonal of their bounding box. Found without A: by
+/// refining towards each vertex (eval::EvaluateVertexLimits).
 struct Certificate {
     double max = 0.0, rms = 0.0;
     Index worstVertex = -1;

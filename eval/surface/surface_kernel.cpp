@@ -186,6 +186,13 @@ inline Shape<Real> FindShape(Lanes<Real> const& v, Frame<Real> const& frame, Rea
     return shape;
 }
 
+/// As a float that is not infinite, whatever it was.
+template <class Real>
+inline float Narrow(Real x) {
+    constexpr Real kLargest = Real(0x1.fffffep127);
+    return static_cast<float>(x > kLargest ? kLargest : x < -kLargest ? -kLargest : x);
+}
+
 /// out[c * stride] = value of c for three channels.
 template <class Real>
 inline void PutThree(float* out, size_t stride, Real x, Real y, Real z) {
@@ -235,10 +242,10 @@ inline void PutLane(Lanes<Real> const& v, Real orientation, Real scale, float* o
     }
     if constexpr (Q >= Quantity::Curvature) {
         Shape<Real> const shape = FindShape(v, frame, orientation, l);
-        out[kMean * stride] = static_cast<float>(shape.mean);
-        out[kGaussian * stride] = static_cast<float>(shape.w11 * shape.w22 - shape.w12 * shape.w12);
-        out[kK1 * stride] = static_cast<float>(shape.mean + shape.deviation);
-        out[kK2 * stride] = static_cast<float>(shape.mean - shape.deviation);
+        out[kMean * stride] = Narrow(shape.mean);
+        out[kGaussian * stride] = Narrow(shape.w11 * shape.w22 - shape.w12 * shape.w12);
+        out[kK1 * stride] = Narrow(shape.mean + shape.deviation);
+        out[kK2 * stride] = Narrow(shape.mean - shape.deviation);
         if constexpr (Q >= Quantity::Direction) PutDirection(v, frame, shape, out, stride, l);
     }
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -84,8 +86,11 @@ private:
     void EvaluateExactly(int domain, double s, double t, size_t column);
     /// All but the position and the values.
     SurfaceSample EvaluateFrameExactly(int domain, double s, double t, size_t column);
+    /// As a float that is not infinite, whatever it was.
     void Put(int channel, size_t column, double value) {
-        _planes[channel * kStride + column] = static_cast<float>(value);
+        constexpr double kLargest = std::numeric_limits<float>::max();
+        _planes[channel * kStride + column] =
+            static_cast<float>(std::clamp(value, -kLargest, kLargest));
     }
     void PutVector(int channel, size_t column, Eigen::Vector3d const& v) {
         for (int c = 0; c < 3; ++c) Put(channel + c, column, v[c]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "far_ext/forms/face_vectors.h"
 
+#include <algorithm>
 #include <vector>
 
 #include <Eigen/Dense>
@@ -41,6 +42,24 @@ Vectors MakeLeastSquares(Vectors const& corners, Eigen::Vector3d const& areaVect
     return sides;
 }
 
+/// Whether the area vector says where a face lies: quads that cross themselves may have none,
+/// though each of their triangles has an area.
+bool HasPlane(Vectors const& corners, Eigen::Vector3d const& areaVector) {
+    double longest = 0.0;
+    for (size_t j = 0; j < corners.size(); ++j)
+        longest = std::max(longest, (corners[(j + 1) % corners.size()] - corners[j]).squaredNorm());
+    return areaVector.norm() > 1e-14 * longest;  // as FindHodgeStars asks of areas
+}
+
+Vectors MakeWeights(Vectors const& corners) {
+    Eigen::Vector3d areaVector = Eigen::Vector3d::Zero();
+    for (size_t j = 2; j < corners.size(); ++j)
+        areaVector += 0.5 * (corners[j - 1] - corners[0]).cross(corners[j] - corners[0]);
+    if (!HasPlane(corners, areaVector)) return {corners.size(), Eigen::Vector3d::Zero()};
+    return corners.size() == 3 ? MakeWhitney(corners, areaVector)
+                               : MakeLeastSquares(corners, areaVector);
+}
+
 }  // namespace
 
 SparseRows BuildFaceVectors(Far::TopologyLevel const& level, std::span<double const> positions) {
@@ -49,11 +68,7 @@ SparseRows BuildFaceVectors(Far::TopologyLevel const& level, std::span<double co
     for (Index face = 0; face < level.GetNumFaces(); ++face) {
         Vectors corners;
         for (Index vertex : level.GetFaceVertices(face)) corners.emplace_back(points[vertex]);
-        Eigen::Vector3d areaVector = Eigen::Vector3d::Zero();
-        for (size_t j = 2; j < corners.size(); ++j)
-            areaVector += 0.5 * (corners[j - 1] - corners[0]).cross(corners[j] - corners[0]);
-        Vectors const weights = corners.size() == 3 ? MakeWhitney(corners, areaVector)
-                                                    : MakeLeastSquares(corners, areaVector);
+        Vectors const weights = MakeWeights(corners);
         for (int axis = 0; axis < 3; ++axis) {
             for (size_t j = 0; j < weights.size(); ++j) {
                 OrientedEdge const side = GetFaceSide(level, face, static_cast<int>(j));

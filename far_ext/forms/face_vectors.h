@@ -15,8 +15,8 @@ namespace limn::far_ext {
 /// Triangles  Whitney's interpolation at the centroid: exact for constant fields.
 /// Polygons   the vector in the plane of the area vector that fits the sides best (least squares);
 ///            the same for constant fields.
+/// Without    a plane, as a quad that crosses itself and whose area vector is 0: 0.
 /// \param positions  3 per vertex of the level
-/// \pre              faces have areas (FindHodgeStars refuses others)
 /// Source            [Wang06] Sec. 4.1; [Forms 8]
 SparseRows BuildFaceVectors(Far::TopologyLevel const& level, std::span<double const> positions);
 

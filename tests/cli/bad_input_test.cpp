@@ -159,6 +159,7 @@ INSTANTIATE_TEST_SUITE_P(Of, ExtremeSizes,
                          testing::Values(Extreme{"Large", "1e30", {}, false},
                                          Extreme{"LargeInHalf", "1e30", {"--half"}, true},
                                          Extreme{"Small", "1e-18", {}, false},
+                                         Extreme{"Smaller", "1e-25", {}, false},
                                          Extreme{"SmallInHalf", "1e-18", {"--half"}, true}),
                          [](auto const& instance) { return instance.param.name; });
 

@@ -25,11 +25,17 @@ void CopyAll(SampleBlock const& block, float* out, size_t outStride) {
     }
 }
 
+/// The root of the mean square of k1 and k2. Squares of what floats hold may be beyond floats.
+float GetCurvedness(float k1, float k2) {
+    float const square = 0.5f * (k1 * k1 + k2 * k2);
+    if (std::isfinite(square)) return std::sqrt(square);
+    double const a = k1, b = k2;
+    return static_cast<float>(std::sqrt(0.5 * (a * a + b * b)));
+}
+
 void FindCurvedness(SampleBlock const& block, float* out, size_t) {
     float const *const k1 = block.GetPlane(eval::kK1), *const k2 = block.GetPlane(eval::kK2);
-    for (size_t i = 0; i < block.GetCount(); ++i) {
-        out[i] = std::sqrt(0.5f * (k1[i] * k1[i] + k2[i] * k2[i]));
-    }
+    for (size_t i = 0; i < block.GetCount(); ++i) out[i] = GetCurvedness(k1[i], k2[i]);
 }
 
 /// 2/pi arctan((k1 + k2) / (k1 - k2)), from -1 (cup) over 0 (saddle) to 1 (cap); 0 where flat.

@@ -158,6 +158,16 @@ TEST(Fit, AlphaGivesAFinerMeshWhoseLimitPassesThroughTheVertices) {
     EXPECT_LE(kept.certificate.max, 1.1e-10);
 }
 
+// Without a rule for boundaries only vertices round faces with a limit have one; alpha moves the
+// others, too, and where to is nobody's business.
+TEST(Fit, WhatHasNoLimitIsNoMissOfACertificate) {
+    engine::Scene scene = test::MakeGridWithHole(7, 6);
+    scene.cage.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_NONE);
+    auto const result = FitToLimit(scene, {.tolerance = 1e-9, .alpha = 0.5});
+    EXPECT_TRUE(result.report.converged);
+    EXPECT_LE(result.certificate.max, 1.01e-9);
+}
+
 TEST(Fit, PrimvarsAreFittedToo) {
     engine::Scene scene = test::MakeQuadSphere(2);
     engine::Primvar colour{"color", 3, {}}, height{"height", 1, {}};

@@ -54,5 +54,13 @@ TEST(FaceVectors, AreExactForConstantFields) {
     EXPECT_GE(numCompared, 3 * (6 + 12 + 144 + 634));  // all but the fan's and spot's
 }
 
+// Its two halves have opposite areas.
+TEST(FaceVectors, OfAQuadThatCrossesItselfAreZero) {
+    auto const scene = test::MakeScene({0, 0, 1, 1, 0, 1, 1, 0, 2, 0, 0, 0}, {{0, 1, 2, 3}});
+    auto const refiner = test::MakeRefiner(scene, 0);
+    auto const rows = far_ext::BuildFaceVectors(refiner->GetLevel(0), scene.positions);
+    for (double const weight : rows.weights) EXPECT_EQ(weight, 0.0);
+}
+
 }  // namespace
 }  // namespace limn
