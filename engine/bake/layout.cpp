@@ -120,7 +120,7 @@ Attributes MakeAttributes(BakeOptions const& options, FileLayout const& file, Mo
         {"limn:options", MakeOptionText(options, file, model)},
         {"limn:tile", std::to_string(tile)},
         {"limn:units", units},
-        {"limn:version", kVersionAndBuild}};
+        {"limn:version", kVersion}};
     for (MapTraits const& map : file.maps) {
         if (map.against) attributes.emplace_back("limn:against", *map.against);
     }
