@@ -2,6 +2,7 @@
 #include "engine/io/ply_header.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -114,6 +115,10 @@ private:
         }
         property.type = ToType(word);
         property.name = std::string(_scan.Word());
+        if (std::ranges::any_of(property.name, [](unsigned char c) { return std::iscntrl(c); })) {
+            _scan.Refuse(fmt::format("property name {} holds a control character",
+                                     TextScanner::Quote(property.name)));
+        }
         if (element.properties.size() == kMaxProperties) {
             _scan.Refuse(fmt::format("element {} has more than {} properties",
                                      TextScanner::Quote(element.name), kMaxProperties));

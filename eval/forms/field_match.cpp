@@ -213,7 +213,8 @@ public:
           _normal(_wishes.rows.transpose() * _wishes.rows),
           _inflow(MakeInflow(level, stars.edge)) {
         far_ext::SparseRows const d1 = far_ext::BuildD1(level);
-        _curl = far_ext::AsMatrix(d1, level.GetNumEdges());
+        // Edges of a face come in its order; by way of columns a row has them by number.
+        _curl = ColumnMatrix(far_ext::AsMatrix(d1, level.GetNumEdges()));
     }
 
     Vector FindSmooth();

@@ -446,6 +446,10 @@ INSTANTIATE_TEST_SUITE_P(
                 With("float y", "float x"),
                 "mesh.ply:5: ",
                 {"'x' of element 'vertex' comes twice"}},
+        Refusal{"ControlCharacterInAName",
+                With("float y\n", "float y\nproperty uchar a\x01b\n"),
+                "mesh.ply:6: ",
+                {"property name 'a", "holds a control character"}},
         Refusal{"TextureNumberWithAFraction",
                 With("vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2",
                      "vertex_indices\nproperty float texnumber\nend_header\n0 0 0\n1 0 0\n0 1 "
