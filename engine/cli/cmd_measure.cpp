@@ -57,6 +57,11 @@ int RunMeasure(MeasureArguments const& a, Context& context) {
         throw Error(ErrorCode::BadOption,
                     "--highlight and --picture write files; name their beginning with -o");
     }
+    std::vector<NamedFile> written;
+    if (!a.prefix.empty()) written.push_back({"-o", a.prefix + ".ply"});
+    if (a.hasPicture) written.push_back({"--picture", a.prefix + ".mean.png"});
+    if (a.hasHighlight) written.push_back({"--highlight", a.prefix + ".highlight.png"});
+    context.KeepApart({{"MESH", a.mesh}}, written);
     auto const model = context.Load(a.mesh);
     CommonOptions const& common = context.GetCommon();
     engine::Job& job = context.GetJob();
