@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "engine/images/exr_writer.h"
+#include "engine/io/distinct_files.h"
 #include "engine/io/file.h"
 #include "engine/scene/udim.h"
 #include "far_ext/error.h"
@@ -54,13 +54,6 @@ std::optional<std::string> ExpandToken(std::string_view token, OutputName const&
     if (token == "{group}") return AsFileName(name.group);
     if (!name.tile && HasUdimToken(token)) return std::string(token);
     return ExpandUdimToken(token, name.tile.value_or(UdimTile{}.GetNumber()));
-}
-
-/// A path without links and detours, as far as it exists.
-std::string Normalise(std::string const& path) {
-    std::error_code error;
-    fs::path const whole = fs::weakly_canonical(fs::absolute(path, error), error);
-    return error ? path : whole.string();
 }
 
 /// True if a file is one that an output's name may become, where this has a tile's token.
@@ -131,16 +124,32 @@ void OutputNames::Add(BakeOptions const& options, std::string const& mesh,
         std::string const of = options.group.empty()
                                    ? fmt::format("{} of '{}'", map, path)
                                    : fmt::format("{} of '{}', {}", map, path, options.group);
-        auto const [found, isNew] = _owners.try_emplace(Normalise(file), of);
-        if (isNew) continue;
+        auto const [found, isNew] = _owners.try_emplace(NormalisePath(file), of);
+        if (isNew) {
+            AddPreviews(options, file, of);
+            continue;
+        }
         throw Error(ErrorCode::BadOption,
                     fmt::format("`pattern`: two outputs are named '{}': {}, and {}", file,
                                 found->second, of));
     }
 }
 
+void OutputNames::AddPreviews(BakeOptions const& options, std::string const& file,
+                              std::string const& of) {
+    if (!options.hasPreview) return;
+    std::string const stem = fs::path(file).replace_extension().string();
+    bool const hasLayers = options.maps.size() > 1 && !HasMapToken(options.pattern);
+    for (std::string const& map : options.maps) {
+        std::string const name = hasLayers ? stem + "." + AsFileName(map) : stem;
+        _owners.try_emplace(NormalisePath(name + kPictureEnding), "preview, " + of);
+        if (options.hasPreviewLegend)
+            _owners.try_emplace(NormalisePath(name + kLegendEnding), "legend, " + of);
+    }
+}
+
 void OutputNames::Refuse(std::string const& path, std::string const& what) const {
-    std::string const file = Normalise(path);
+    std::string const file = NormalisePath(path);
     for (auto const& [output, of] : _owners) {
         if (output != file && !IsTileOf(output, file)) continue;
         throw Error(ErrorCode::BadOption,

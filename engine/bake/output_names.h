@@ -14,6 +14,9 @@ namespace limn::engine {
 // How a bake's pattern becomes names of files. Tokens stand in braces or angle brackets: {map},
 // {mesh}, {group}, and UDIM's in all its spellings (scene/udim).
 
+/// Of pictures beside an EXR file, behind its name without an ending.
+constexpr char const *kPictureEnding = ".png", *kLegendEnding = ".legend.png";
+
 /// What the tokens of a pattern stand for.
 struct OutputName {
     std::string map, mesh, group;
@@ -56,6 +59,8 @@ public:
     void Refuse(std::string const& path, std::string const& what) const;
 
 private:
+    void AddPreviews(BakeOptions const& options, std::string const& file, std::string const& of);
+
     std::map<std::string, std::string> _owners;  // per file, without links and detours: what of
 };
 

@@ -20,7 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char const *kPicture = ".png", *kLegend = ".legend.png";
 // Remarks of a picture: what it was made by, and of which layer where maps share a file. No names
 // of files, so that the same picture has the same bytes wherever it lies.
 constexpr char const *kMadeKey = "limn:made", *kLayerKey = "limn:layer";
@@ -75,8 +74,8 @@ PreviewFiles::PreviewFiles(std::string const& path, FileLayout const& file,
 std::vector<std::string> PreviewFiles::GetNames() const {
     std::vector<std::string> names;
     for (Named const& named : _previews) {
-        names.push_back(named.name + kPicture);
-        if (_hasLegends) names.push_back(named.name + kLegend);
+        names.push_back(named.name + kPictureEnding);
+        if (_hasLegends) names.push_back(named.name + kLegendEnding);
     }
     return names;
 }
@@ -98,7 +97,7 @@ void PreviewFiles::RemoveStale(Model const& model) const {
     std::vector<std::string> layers = ListFixedMapNames();
     for (Primvar const& primvar : model.GetPrimvars()) layers.push_back("primvar:" + primvar.name);
     auto const remove = [](std::string const& name, std::string const& layer) {
-        for (char const* ending : {kPicture, kLegend}) {
+        for (char const* ending : {kPictureEnding, kLegendEnding}) {
             std::error_code ignored;
             if (IsPictureOf(name + ending, layer)) fs::remove(name + ending, ignored);
         }
@@ -128,10 +127,11 @@ std::vector<std::unique_ptr<AtomicFile>> PreviewFiles::Write(std::string const& 
                 values[c] = rows->GetRow(row, c);
             named.preview.DrawRow(row, values, rgb);
         };
-        WritePngRows(open(named.name + kPicture), named.preview.GetWidth(),
+        WritePngRows(open(named.name + kPictureEnding), named.preview.GetWidth(),
                      named.preview.GetHeight(), fillRow, texts);
         if (_hasLegends)
-            WritePng(open(named.name + kLegend), named.preview.GetColours().DrawLegend(of), texts);
+            WritePng(open(named.name + kLegendEnding), named.preview.GetColours().DrawLegend(of),
+                     texts);
     }
     return files;
 }

@@ -47,6 +47,11 @@ struct RunStart {
     nlohmann::json effectiveOptions;     ///< an object, all options
 };
 
+/// A file, and the option or argument that names it.
+struct NamedFile {
+    std::string option, path;
+};
+
 /// How a run ended.
 struct RunEnd {
     int status = kDone;
@@ -101,6 +106,11 @@ public:
 
     /// What MissTarget was told; empty if it never was.
     std::string const& GetMiss() const { return _miss; }
+
+    /// Refuses a run that would overwrite a file that it reads, or one of its files (the report is
+    /// one of them) with another. To be called before anything is read; empty paths are none.
+    /// \throws Error BadOption
+    void KeepApart(std::vector<NamedFile> const& read, std::vector<NamedFile> const& written) const;
 
     /// \throws Error BadOption  if --report - would mix with data on stdout
     void KeepStdoutForData(bool writesToStdout) const;

@@ -283,6 +283,10 @@ std::vector<Bake> PlanBakes(BakeArguments const& a, engine::BakeOptions const& o
     }
     std::string const& report = context.GetCommon().reportPath;
     if (!report.empty() && report != "-") names.Refuse(report, "the report");
+    std::vector<NamedFile> read{
+        {"--against", a.against}, {"--rest", a.rest}, {"--field", a.fieldPath}};
+    for (std::string const& path : a.meshes) read.push_back({"MESH", path});
+    context.KeepApart(read, {});  // the report from inputs
     return bakes;
 }
 

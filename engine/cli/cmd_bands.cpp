@@ -6,6 +6,14 @@
 
 namespace limn::cli {
 
+namespace {
+
+std::string NameBand(std::string const& prefix, int band) {
+    return fmt::format("{}.band{}.obj", prefix, band);
+}
+
+}  // namespace
+
 Verb AddBands(CLI::App& app) {
     struct BandsArguments {
         std::string mesh, prefix;
@@ -24,6 +32,10 @@ Verb AddBands(CLI::App& app) {
     verb->footer(
         "Example:\n  limn bands scenes/spot/spot.obj -o out/spot --count 4 --precision double");
     return {verb, [a](Context& context) {
+                std::vector<NamedFile> written{{"-o", a->prefix + ".remainder.obj"}};
+                for (int i = 0; i < a->count; ++i)
+                    written.push_back({"-o", NameBand(a->prefix, i)});
+                context.KeepApart({{"MESH", a->mesh}}, written);
                 auto const model = context.Load(a->mesh);
                 auto bands = engine::SplitIntoBands(model, a->count, a->alpha, context.GetJob());
                 context.GetReport()["before"] = DescribeExtent(model, model.GetPositions());
@@ -43,7 +55,7 @@ Verb AddBands(CLI::App& app) {
                     outputs.push_back(DescribeOutput(path, model, output.positions, precision));
                 };
                 for (size_t i = 0; i < bands.bands.size(); ++i)
-                    add(fmt::format("{}.band{}.obj", a->prefix, i), bands.bands[i]);
+                    add(NameBand(a->prefix, static_cast<int>(i)), bands.bands[i]);
                 add(a->prefix + ".remainder.obj", bands.remainder);
                 files.Commit();
                 context.GetReport()["outputs"] = std::move(outputs);

@@ -26,6 +26,7 @@ template <class Options>
 int Run(FilterArguments<Options> const& a, Context& context,
         std::vector<double> (*filter)(engine::Model const&, Options const&, engine::Job&)) {
     engine::RequireMeshEnding(a.output);
+    context.KeepApart({{"MESH", a.mesh}}, {{"-o", a.output}});
     auto const model = context.Load(a.mesh);
     context.GetReport()["before"] = DescribeExtent(model, model.GetPositions());
     engine::Scene output = model.MakeScene();

@@ -38,6 +38,7 @@ void EvaluateFrames(EvalArguments const& a, engine::Model const& model,
 int Run(EvalArguments const& a, Context& context) {
     CommonOptions const& common = context.GetCommon();
     context.KeepStdoutForData(a.output.empty());
+    context.KeepApart({{"MESH", a.mesh}, {"--at", a.places}}, {{"-o", a.output}});
     auto const model = context.Load(a.mesh);
     engine::Extent const extent = engine::FindExtent(model.GetPositions());
     Precision const enough = engine::FindTablePrecision(extent);

@@ -125,8 +125,20 @@ void AddToReport(nlohmann::json& report, engine::FieldAudit const& audit) {
                         {"index", singularity.index}});
 }
 
+/// The vectors beside a mesh.
+std::string NameVectors(std::string const& mesh) {
+    return mesh.substr(0, mesh.rfind('.')) + ".vectors.csv";
+}
+
+void KeepFilesApart(FieldArguments const& a, Output output, Context const& context) {
+    std::string const vectors = output == Output::Mesh ? NameVectors(a.output) : std::string();
+    context.KeepApart({{"MESH", a.mesh}, {"--edges", a.edgesPath}, {"--match", a.matchPath}},
+                      {{"-o", a.output}, {"-o", vectors}, {"--picture", a.picture}});
+}
+
 int Run(FieldArguments const& a, Context& context) {
     Output const output = FindOutput(a.output);
+    KeepFilesApart(a, output, context);
     auto const model = context.Load(a.mesh);
     auto options = MakeOptions(a, model.GetLevel());
     options.hasVertexVectors = output == Output::Mesh || !a.picture.empty();
@@ -148,8 +160,7 @@ int Run(FieldArguments const& a, Context& context) {
         Precision const ofMesh = context.ChoosePrecision(a.output, field.mesh.positions);
         context.GetReport()["precision_written"] = kPrecisionWords.GetWord(ofMesh);
         warnings = files.Add(a.output, field.mesh, ofMesh);
-        files.Add(a.output.substr(0, a.output.rfind('.')) + ".vectors.csv",
-                  FormatVectors("vertex", field.vectors, precision));
+        files.Add(NameVectors(a.output), FormatVectors("vertex", field.vectors, precision));
     } else if (output == Output::Edges) {
         files.Add(a.output,
                   engine::FormatEdgeValues(field.refined->GetLevel(options.levels), field.form));

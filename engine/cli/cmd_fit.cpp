@@ -123,6 +123,7 @@ int Run(FitArguments const& a, Context& context) {
         throw Error(ErrorCode::BadOption,
                     "--keep-topology: without --alpha the topology is kept anyway");
     }
+    context.KeepApart({{"MESH", a.mesh}}, {{"-o", a.output}});
     auto model = context.Load(a.mesh);
     if (a.level > 0) {
         model = engine::Model::Build(

@@ -122,6 +122,7 @@ Verb AddInfo(CLI::App& app) {
     verb->footer("Example:\n  limn info scenes/spot/spot.obj --json");
     return {verb, [a](Context& context) {
                 context.KeepStdoutForData(true);
+                context.KeepApart({{"MESH", a->mesh}}, {});
                 auto const model = context.Load(a->mesh, Context::Defects::Keep);
                 context.GetJob().Start("describing");
                 auto const info = engine::DescribeMesh(model);

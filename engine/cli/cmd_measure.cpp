@@ -63,6 +63,11 @@ int RunMeasure(MeasureArguments const& a, Context& context) {
         throw Error(ErrorCode::BadOption, "--preview-range needs --picture");
     std::optional<engine::PreviewRange> range;
     if (!a.range.empty()) range = engine::PreviewRange::Parse(a.range);
+    std::vector<NamedFile> written;
+    if (!a.prefix.empty()) written.push_back({"-o", a.prefix + ".ply"});
+    if (a.hasPicture) written.push_back({"--picture", a.prefix + ".mean.png"});
+    if (a.hasHighlight) written.push_back({"--highlight", a.prefix + ".highlight.png"});
+    context.KeepApart({{"MESH", a.mesh}}, written);
     auto const model = context.Load(a.mesh);
     CommonOptions const& common = context.GetCommon();
     engine::Job& job = context.GetJob();

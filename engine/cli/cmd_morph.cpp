@@ -9,6 +9,10 @@ namespace limn::cli {
 
 namespace {
 
+std::string NameStep(std::string const& prefix, int step) {
+    return fmt::format("{}.{:04}.obj", prefix, step);
+}
+
 /// One for all frames: the ends of the way decide.
 Precision ChoosePrecision(std::string const& prefix, engine::Model const& from,
                           engine::Model const& to, Context& context) {
@@ -39,6 +43,10 @@ Verb AddMorph(CLI::App& app) {
     AddAlpha(*verb, a->options.alpha);
     verb->footer("Example:\n  limn morph neutral.obj smile.obj -o out/smile --steps 12");
     return {verb, [a](Context& context) {
+                std::vector<NamedFile> written;
+                for (int step = 1; step <= a->steps; ++step)
+                    written.push_back({"-o", NameStep(a->prefix, step)});
+                context.KeepApart({{"FROM", a->from}, {"TO", a->to}}, written);
                 auto const from = context.Load(a->from), to = context.Load(a->to);
                 engine::Morph morph(from, to, a->options);
                 context.GetReport()["before"] = DescribeExtent(from, from.GetPositions());
@@ -48,7 +56,7 @@ Verb AddMorph(CLI::App& app) {
                 auto outputs = nlohmann::json::array();
                 std::vector<std::string> warnings;
                 for (int step = 1; step <= a->steps; ++step) {
-                    std::string const path = fmt::format("{}.{:04}.obj", a->prefix, step);
+                    std::string const path = NameStep(a->prefix, step);
                     output.positions = morph.MakeNext(context.GetJob());
                     context.GetJob().Start("writing " + path);
                     engine::RoundAsWritten(path, precision, output.positions);

@@ -156,6 +156,7 @@ int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& contex
 }
 
 int RunRefine(RefineArguments const& a, CLI::App const& verb, Context& context) {
+    context.KeepApart({{"MESH", a.mesh}, {"--edit", a.editPath}}, {{"-o", a.output}});
     if (a.isCurve) return RefineCurves(a, verb, context);
     CheckSpace(a, verb);
     auto const model = ApplyRule(a, context.GetCommon(), context.Load(a.mesh));

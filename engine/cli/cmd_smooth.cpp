@@ -172,6 +172,11 @@ std::string Explain(std::string const& path, engine::SmoothReport const& found) 
 
 int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     CheckOptions(a, verb);
+    context.KeepApart({{"MESH", a.mesh},
+                       {"--width-map", a.widthMap},
+                       {"--width-edges", a.widthEdges},
+                       {"--width-texture", a.widthTexture}},
+                      {{"-o", a.output}, {"--picture", a.picture}});
     auto model = context.Load(a.mesh,
                               Context::Defects::Keep);  // engine::Smooth warns of them, or refuses
     model = WithScheme(model, ChooseScheme(a, context.GetCommon(), model.GetCage()));

@@ -8,6 +8,7 @@
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
 #include "engine/cli/option_names.h"
+#include "engine/io/distinct_files.h"
 #include "engine/io/mesh_writer.h"
 #include "engine/scene/defects.h"
 #include "engine/scene/subdivision_names.h"
@@ -105,6 +106,19 @@ void Context::WriteMesh(std::string const& path, engine::Scene const& mesh, Prec
 int Context::MissTarget(std::string message) {
     _miss = std::move(message);
     return kNotReached;
+}
+
+void Context::KeepApart(std::vector<NamedFile> const& read,
+                        std::vector<NamedFile> const& written) const {
+    engine::DistinctFiles files;
+    for (auto const& [option, path] : read) {
+        if (!path.empty()) files.AddRead(path, option);
+    }
+    for (auto const& [option, path] : written) {
+        if (!path.empty()) files.AddWritten(path, option);
+    }
+    std::string const& report = _common.reportPath;
+    if (!report.empty() && report != "-") files.AddWritten(report, "--report");
 }
 
 void Context::KeepStdoutForData(bool writesToStdout) const {

@@ -9,7 +9,7 @@
 int main(int argc, char** argv) {
     using namespace limn::cli;
     OpenStandardStreams();
-    InstallSignalHandlers();
+    WatchForSignals();
     limn::engine::MeshFiles files;
     Command command({argv + 1, argv + argc}, files, GetStopStatus);
     int status = 0;

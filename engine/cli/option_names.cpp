@@ -43,6 +43,7 @@ constexpr OptionName kOptionNames[] = {
     {"samplesPerSide", "--samples"},
     {"scheme", "--scheme"},
     {"seam", "--seam-bound"},
+    {"gaussBonnet", "--audit-bound"},
     {"solver", "--solver"},
     {"space", "--space"},
     {"spatialLevels", "--spatial-first"},

@@ -21,14 +21,23 @@ using std::chrono::milliseconds;
 
 std::atomic<int> firstSignal{0}, numSignals{0};
 
-/// Posted where something has happened; a signal handler may do that, too.
+/// Posted where something has happened.
 sem_t somethingHappened;
 
-void OnSignal(int signal) {
+/// Safe in a signal handler.
+void NoteSignal(int signal) {
     int none = 0;
     firstSignal.compare_exchange_strong(none, signal);
     if (++numSignals == 3) std::_Exit(128 + signal);
     ::sem_post(&somethingHappened);
+}
+
+/// Takes blocked signals as they come, until the process ends.
+void TakeSignals(sigset_t signals) {
+    for (;;) {
+        int signal = 0;
+        if (::sigwait(&signals, &signal) == 0) NoteSignal(signal);
+    }
 }
 
 /// Processor time of all threads.
@@ -72,14 +81,27 @@ void OpenStandardStreams() {
     }
 }
 
-void InstallSignalHandlers() {
+void WatchForSignals() {
     ::sem_init(&somethingHappened, 0, 0);
-    std::signal(SIGINT, OnSignal);
-    std::signal(SIGTERM, OnSignal);
-    // nohup has it ignored, which should stay so.
-    if (std::signal(SIGHUP, OnSignal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+    sigset_t watched;
+    ::sigemptyset(&watched);
+    for (int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        if (std::signal(signal, NoteSignal) == SIG_IGN && signal == SIGHUP)
+            std::signal(signal, SIG_IGN);  // nohup has it ignored, which should stay so
+        else
+            ::sigaddset(&watched, signal);
+    }
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
+    // A library may replace a handler while it works: METIS puts one on SIGTERM that is for its own
+    // thread, and for a signal that another thread gets it jumps to nowhere. Signals that all
+    // threads block, as they inherit it from this one, come to no handler.
+    ::pthread_sigmask(SIG_BLOCK, &watched, nullptr);
+    try {
+        std::thread(TakeSignals, watched).detach();
+    } catch (std::system_error const&) {  // there may be no more threads
+        ::pthread_sigmask(SIG_UNBLOCK, &watched, nullptr);
+    }
 }
 
 int GetStopStatus() {

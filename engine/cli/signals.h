@@ -12,7 +12,8 @@ void OpenStandardStreams();
 /// Notes SIGINT, SIGTERM and SIGHUP, so that the work at hand can stop and leave nothing
 /// half-written. A third of them ends the process at once. Writing into what nobody reads, or
 /// beyond the limit of a file's size, fails rather than ends it.
-void InstallSignalHandlers();
+/// Called once, before there are other threads.
+void WatchForSignals();
 
 /// The exit status that the signal that has come asks for, 128 + its number; 0 if none has.
 int GetStopStatus();

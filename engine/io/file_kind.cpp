@@ -102,11 +102,12 @@ std::string_view RecogniseMarkup(std::string_view head) {
 }  // namespace
 
 std::string_view RecogniseForeignFile(std::string_view bytes) {
+    std::string_view const unmarked = TextScanner::WithoutMark(bytes);
     for (Beginning const& beginning : kBeginnings) {
-        if (bytes.starts_with(beginning.bytes)) return beginning.kind;
+        if (unmarked.starts_with(beginning.bytes)) return beginning.kind;
     }
     constexpr size_t kHead = 4096;  // where words that tell a text's kind stand
-    std::string_view const head = TextScanner::WithoutMark(bytes).substr(0, kHead);
+    std::string_view const head = unmarked.substr(0, kHead);
     if (head.starts_with("solid") && Has(head, "facet")) return "STL (text)";
     if (IsBinaryStl(bytes)) return "STL";
     return RecogniseMarkup(head);

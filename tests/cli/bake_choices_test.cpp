@@ -313,6 +313,12 @@ INSTANTIATE_TEST_SUITE_P(
         Effectless{"SeamBound", {"--maps", "mean", "--seam-bound", "1"}, "needs --audit"},
         Effectless{
             "SeamBoundOfNoMap", {"--maps", "mean", "--audit", "--seam-bound", "k1=1"}, "not baked"},
+        Effectless{"NegativeAuditBound",
+                   {"--maps", "mean", "--audit", "--audit-bound", "-1"},
+                   "--audit-bound is -1; a bound of 0 or more"},
+        Effectless{"NegativeSeamBound",
+                   {"--maps", "mean", "--audit", "--seam-bound", "mean=-1"},
+                   "--seam-bound is -1; a bound of 0 or more"},
         Effectless{"Range", {"--maps", "mean", "--preview-range", "p1"}, "needs --preview"},
         Effectless{"View", {"--maps", "mean", "--view", "0,0,1"}, "needs --picture"},
         Effectless{"Legend", {"--maps", "mean", "--preview-legend"}, "needs --preview"}),

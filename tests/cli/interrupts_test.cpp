@@ -77,17 +77,35 @@ TEST_P(Interrupted, EndsWithinASecondOfProcessorTimeAndLeavesNothing) {
         if (word.starts_with("OUT")) word = folder / word;
         words.push_back(word);
     }
-    for (double const moment : {0.05, 0.6}) {
+    struct Ask {
+        double moment;
+        int signal;
+    };
+    for (auto const [moment, signal] : {Ask{0.05, SIGINT}, Ask{0.6, SIGTERM}}) {
         test::Process process(words);
         while (process.GetProcessorTime() < moment && !process.HasEnded())
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         double const before = process.GetProcessorTime();
-        process.Send(SIGINT);
+        process.Send(signal);
         Outcome const outcome = process.Wait();
         EXPECT_LT(outcome.processorSeconds - before, 1.0) << "at " << moment;
         if (outcome.status == 0) break;  // it was nearly done
-        ExpectError(outcome, 130, "interrupted");
+        ExpectError(outcome, 128 + signal, "interrupted");
         EXPECT_TRUE(folder.List().empty());
+    }
+}
+
+// METIS puts a handler of its own on SIGTERM while it orders, good for its own thread only.
+TEST(Interrupts, SigtermWhileALibraryHasItsOwnHandlerEndsARunLikeAnyOther) {
+    test::TemporaryFolder const folder;
+    Words const words{LIMN_PROGRAM, "field", GetInputs().mesh, "-o", folder / "a.obj",
+                      "--source",   "0",     "--sink",         "7"};
+    for (double const moment : {0.2, 0.3, 0.4}) {
+        test::Process process(words);
+        while (process.GetProcessorTime() < moment && !process.HasEnded())
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        process.Send(SIGTERM);
+        EXPECT_EQ(process.Wait().status, 128 + SIGTERM) << moment;
     }
 }
 

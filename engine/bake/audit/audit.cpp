@@ -101,10 +101,20 @@ void WarnOfNothing(AuditReport const& report, AuditInput const& input, Job& job)
                                                 : "there are none"));
 }
 
+/// \throws Error BadOption: nothing is within it
+void RequireBound(char const* member, double bound) {
+    if (bound >= 0.0) return;
+    throw Error(ErrorCode::BadOption,
+                fmt::format("`{}` is {:g}; a bound of 0 or more is needed", member, bound));
+}
+
 }  // namespace
 
 void CheckBounds(AuditBounds const& bounds, std::vector<std::string> const& maps) {
+    RequireBound("gaussBonnet", bounds.gaussBonnet);
+    if (bounds.seam) RequireBound("seam", *bounds.seam);
     for (auto const& [map, bound] : bounds.seamOfMap) {
+        RequireBound("seam", bound);
         if (std::ranges::find(maps, map) != maps.end()) continue;
         throw Error(ErrorCode::BadOption,
                     fmt::format("`seam` '{}={:g}': that map is not baked", map, bound));

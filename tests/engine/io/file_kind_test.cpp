@@ -41,6 +41,7 @@ INSTANTIATE_TEST_SUITE_P(
     Of, ForeignFiles,
     testing::Values(
         ForeignFile{"Usda", "#usda 1.0\n(\n)\n", "USD"},
+        ForeignFile{"UsdaBehindMark", "\xef\xbb\xbf#usda 1.0\n(\n)\n", "USD"},
         ForeignFile{"Usdc", std::string("PXR-USDC\0\x08", 10), "USD (binary)"},
         ForeignFile{"Usdz", std::string("PK\x03\x04\x0a\0", 6), "ZIP (USDZ, 3MF, a spreadsheet?)"},
         ForeignFile{"Glb", std::string("glTF\x02\0\0\0", 8), "glTF (binary)"},
