@@ -3,6 +3,7 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
+#include "engine/cli/option_rules.h"
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/field/field.h"
@@ -127,6 +128,7 @@ void AddToReport(nlohmann::json& report, engine::FieldAudit const& audit) {
 
 int Run(FieldArguments const& a, Context& context) {
     Output const output = FindOutput(a.output);
+    RequirePngEnding("--picture", a.picture);
     auto const model = context.Load(a.mesh);
     auto options = MakeOptions(a, model.GetLevel());
     options.hasVertexVectors = output == Output::Mesh || !a.picture.empty();
