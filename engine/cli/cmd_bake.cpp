@@ -19,6 +19,7 @@
 #include "engine/cli/option_names.h"
 #include "engine/cli/option_rules.h"
 #include "engine/cli/options/choices.h"
+#include "engine/cli/options/nearest_words.h"
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/images/exr_names.h"
@@ -70,16 +71,16 @@ engine::Encoding ParseEncoding(std::string const& text) {
 /// "auto", or "X,Y,Z".
 engine::Origin ParseOrigin(std::string const& text) {
     if (text == "auto") return engine::AutomaticOrigin{};
-    std::array<double, 3> point{};
-    std::istringstream words(text);
-    std::string word;
-    size_t count = 0;
-    for (; std::getline(words, word, ','); ++count) {
-        if (count < point.size()) point[count] = ParseNumber<double>("--origin", word);
-    }
-    if (count != point.size() || text.ends_with(',')) {
+    if (std::ranges::count(text, ',') != 2) {
         throw Error(ErrorCode::BadOption,
                     fmt::format("--origin: '{}' is neither X,Y,Z nor auto", text));
+    }
+    std::array<double, 3> point{};
+    std::istringstream words(text);
+    for (double& coordinate : point) {
+        std::string word;
+        std::getline(words, word, ',');
+        coordinate = ParseNumber<double>("--origin", word);
     }
     return point;
 }
@@ -98,13 +99,15 @@ void ParseHalf(std::string const& text, engine::BakeOptions& options) {
     }
 }
 
+constexpr NumberRange<double> kAnyBound{.low = 0.0};
+
 /// "0.1", or "mean=0.1" for one map.
 engine::AuditBounds ParseBounds(BakeArguments const& a) {
     engine::AuditBounds bounds = a.bounds;
     for (std::string const& text : a.seamBounds) {
         size_t const equals = text.rfind('=');
-        double const bound =
-            ParseNumber<double>("--seam-bound", std::string_view(text).substr(equals + 1));
+        double const bound = ParseNumber<double>(
+            "--seam-bound", std::string_view(text).substr(equals + 1), kAnyBound);
         if (equals == std::string::npos)
             bounds.seam = bound;
         else
@@ -137,9 +140,17 @@ void RefusePictures(BakeArguments const& a) {
         throw Error(ErrorCode::BadOption, "--picture looks maps up in their files; -o names none");
 }
 
+void CheckMapNames(std::vector<std::string> const& maps) {
+    auto const unknown = std::ranges::find_if_not(maps, engine::IsMapName);
+    if (unknown == maps.end()) return;
+    throw Error(
+        ErrorCode::BadOption,
+        fmt::format("--maps: there is no map '{}'; there are: {}{}", *unknown,
+                    engine::ListMapNames(), AskForNearest(*unknown, engine::ListFixedMapNames())));
+}
+
 /// Refuses flags that would change nothing.
 void RefuseWithoutEffect(CLI::App const& verb, std::vector<std::string> const& maps) {
-    if (!std::ranges::all_of(maps, engine::IsMapName)) return;  // that is the error to tell
     auto const isBaked = [&](std::string const& map) {
         return std::ranges::find(maps, map) != maps.end();
     };
@@ -325,12 +336,16 @@ std::vector<std::string> RunBake(BakeArguments const& a, Bake& bake,
 int Run(BakeArguments const& a, CLI::App const& verb, Context& context) {
     engine::CheckTokens(a.options.pattern);
     engine::RequireExrEnding(a.options.pattern);
+    CheckMapNames(a.options.maps);
     RefuseWithoutEffect(verb, a.options.maps);
     RefusePictures(a);
     engine::BakeOptions const options = MakeOptions(a, context.GetCommon());
     engine::AuditBounds const bounds = ParseBounds(a);
     if (a.meshes.size() > 1 && a.options.pattern.find("{mesh}") == std::string::npos) {
-        throw Error(ErrorCode::BadOption, "-o: several meshes need {mesh} in the output's name");
+        throw Error(
+            ErrorCode::BadOption,
+            fmt::format("-o: several meshes ({}, the last '{}') need {{mesh}} in the output's name",
+                        a.meshes.size(), a.meshes.back()));
     }
     std::vector<Bake> bakes = PlanBakes(a, options, context);
     if (a.options.maps.size() > 1 && !engine::HasMapToken(a.options.pattern)) {
@@ -474,10 +489,11 @@ Verb AddBake(CLI::App& app) {
     verb->add_flag("--audit", a->hasAudit,
                    "check seams, coverage and Gauss-Bonnet, and report them");
     AddNumberOption(*verb, "--audit-bound", a->bounds.gaussBonnet,
-                    "of the Gauss-Bonnet error (default 1e-3); missed: exit status 4");
+                    "of the Gauss-Bonnet error (default 1e-3); missed: exit status 4", kAnyBound);
     verb->add_option("--seam-bound", a->seamBounds,
                      "X or MAP=X: of the largest difference along seams, in map units (default: "
-                     "not judged); may be repeated")
+                     "not judged); several with commas between them, or repeated")
+        ->delimiter(',')
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     verb->add_option("--groups", a->options.groups, "only faces of these usemtl, g or o groups")

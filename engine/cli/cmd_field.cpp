@@ -3,6 +3,7 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
+#include "engine/cli/option_rules.h"
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/field/field.h"
@@ -138,6 +139,7 @@ void KeepFilesApart(FieldArguments const& a, Output output, Context const& conte
 
 int Run(FieldArguments const& a, Context& context) {
     Output const output = FindOutput(a.output);
+    RequirePngEnding("--picture", a.picture);
     KeepFilesApart(a, output, context);
     auto const model = context.Load(a.mesh);
     auto options = MakeOptions(a, model.GetLevel());

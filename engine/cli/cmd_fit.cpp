@@ -5,6 +5,7 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
+#include "engine/cli/option_rules.h"
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/fit/fit.h"
@@ -115,10 +116,12 @@ std::string Explain(std::string const& path, engine::FitResult const& result, do
         tolerance, result.lambdaMin);
 }
 
-int Run(FitArguments const& a, Context& context) {
+int Run(FitArguments const& a, CLI::App const& verb, Context& context) {
     engine::FitOptions options = a.options;
     options.target = context.MakeTarget(a.output);
     engine::RequireMeshEnding(a.output);
+    if (options.method == eval::SolveMethod::Direct)
+        RefuseEach(verb, {"--max-iterations"}, "has no effect with --method direct");
     if (options.keepsTopology && options.alpha == 0.0) {
         throw Error(ErrorCode::BadOption,
                     "--keep-topology: without --alpha the topology is kept anyway");
@@ -161,7 +164,8 @@ Verb AddFit(CLI::App& app) {
     AddWordOption(*verb, "--method", a->options.method, eval::kSolveMethodWords,
                   "auto (default): the fastest that converges");
     AddNumberOption(*verb, "--max-iterations", a->options.maxIterations,
-                    "applications of the limit matrix (default 1000)", {1, 100000000});
+                    "applications of the limit matrix (default 1000); auto factorises after them",
+                    {1, 100000000});
     AddNumberOption(*verb, "--alpha", a->options.alpha,
                     "generalised Catmull-Clark in the first step, 0 (default) to 1; the result is "
                     "one level finer",
@@ -174,7 +178,7 @@ Verb AddFit(CLI::App& app) {
     verb->add_flag("--keep-result", a->keepsResult,
                    "write the result even where it misses the tolerance (exit status 4)");
     verb->footer("Example:\n  limn fit scenes/spot/spot.obj -o out/spot.fit.obj --report -");
-    return {verb, [a](Context& context) { return Run(*a, context); }};
+    return {verb, [a, verb](Context& context) { return Run(*a, *verb, context); }};
 }
 
 }  // namespace limn::cli

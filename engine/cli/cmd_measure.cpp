@@ -3,6 +3,7 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
+#include "engine/cli/option_rules.h"
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/images/png.h"
@@ -53,7 +54,7 @@ nlohmann::json ToJson(engine::Measurement const& found) {
     return json;
 }
 
-int RunMeasure(MeasureArguments const& a, Context& context) {
+int RunMeasure(MeasureArguments const& a, CLI::App const& verb, Context& context) {
     context.KeepStdoutForData(true);
     if (a.prefix.empty() && (a.hasHighlight || a.hasPicture)) {
         throw Error(ErrorCode::BadOption,
@@ -63,6 +64,8 @@ int RunMeasure(MeasureArguments const& a, Context& context) {
         throw Error(ErrorCode::BadOption, "--preview-range needs --picture");
     std::optional<engine::PreviewRange> range;
     if (!a.range.empty()) range = engine::PreviewRange::Parse(a.range);
+    if (!a.hasHighlight && !a.hasPicture)
+        RefuseEach(verb, {"--view"}, "needs --highlight or --picture");
     std::vector<NamedFile> written;
     if (!a.prefix.empty()) written.push_back({"-o", a.prefix + ".ply"});
     if (a.hasPicture) written.push_back({"--picture", a.prefix + ".mean.png"});
@@ -119,7 +122,7 @@ Verb AddMeasure(CLI::App& app) {
         ->delimiter(',')
         ->expected(3);
     verb->footer("Example:\n  limn measure scenes/spot/spot.obj -o out/spot --highlight");
-    return {verb, [a](Context& context) { return RunMeasure(*a, context); }};
+    return {verb, [a, verb](Context& context) { return RunMeasure(*a, *verb, context); }};
 }
 
 }  // namespace limn::cli

@@ -38,6 +38,17 @@ struct RefineArguments {
     engine::DifferentialOptions options;
 };
 
+void RequireTriangles(engine::Model const& model, NamedRule const& rule) {
+    auto const& sizes = model.GetCage().faceSizes;
+    auto const polygon = std::ranges::find_if(sizes, [](int size) { return size != 3; });
+    if (polygon == sizes.end()) return;
+    throw Error(
+        ErrorCode::BadMesh,
+        fmt::format("{}: {} has {} corners; --rule {} takes triangles only, --rule catmark all",
+                    model.GetPath(), model.NameFace(static_cast<Index>(polygon - sizes.begin())),
+                    *polygon, kRuleWords.GetWord(rule)));
+}
+
 /// The mesh under the scheme that the rule asks for, where one is named.
 engine::Model ApplyRule(RefineArguments const& a, CommonOptions const& common,
                         engine::Model const& model) {
@@ -47,6 +58,7 @@ engine::Model ApplyRule(RefineArguments const& a, CommonOptions const& common,
                     fmt::format("--rule {} contradicts --scheme {}", kRuleWords.GetWord(*a.rule),
                                 engine::kSchemeWords.GetWord(*common.scheme)));
     }
+    if (a.rule->scheme == Sdc::SCHEME_LOOP) RequireTriangles(model, *a.rule);
     return WithScheme(model, a.rule->scheme);
 }
 

@@ -60,6 +60,7 @@ void CheckSolver(SmoothArguments const& a, CLI::App const& verb) {
 
 void CheckOptions(SmoothArguments const& a, CLI::App const& verb) {
     engine::RequireMeshEnding(a.output);
+    RequirePngEnding("--picture", a.picture);
     CheckWidths(a, verb);
     CheckSolver(a, verb);
     RefuseTogether(verb, {"--graph", "--preserve-volume"});

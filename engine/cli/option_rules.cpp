@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/io/file.h"
 #include "far_ext/error.h"
 
 namespace limn::cli {
@@ -24,6 +25,13 @@ void RefuseEach(CLI::App const& verb, std::vector<char const*> const& flags,
     for (char const* flag : flags) {
         if (verb.count(flag)) throw Error(ErrorCode::BadOption, fmt::format("{} {}", flag, why));
     }
+}
+
+void RequirePngEnding(std::string const& flag, std::string const& path) {
+    std::string const ending = engine::GetEnding(path);
+    if (ending.empty() || ending == ".png") return;
+    throw Error(ErrorCode::BadOption,
+                fmt::format("{} '{}': a picture is written as .png", flag, path));
 }
 
 }  // namespace limn::cli

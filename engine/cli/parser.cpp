@@ -77,16 +77,37 @@ std::string FindOffender(std::vector<std::string> const& words) {
     return flag == words.end() ? words[0] : *flag;
 }
 
-/// "-size" means --size; as short options it would be -s with the value "ize".
+/// "-size" means --size, and "-o=a" -o a; as short options they would have the values "ize" and
+/// "=a".
 void RefuseSingleDashes(CLI::App const& verb, std::vector<std::string> const& words) {
     for (std::string const& word : words) {
         if (word == "--") return;
         if (word.size() < 3 || !IsFlag(word) || word[1] == '-') continue;
+        if (word[2] == '=') {
+            throw Error(ErrorCode::BadOption,
+                        fmt::format("{}: '{}': write {} {}, without '='", verb.get_name(), word,
+                                    word.substr(0, 2), word.substr(3)));
+        }
         std::string const flag = "-" + GetFlag(word);
         if (!verb.get_option_no_throw(flag)) continue;
         throw Error(ErrorCode::BadOption, fmt::format("{}: no option '{}'; did you mean {}?",
                                                       verb.get_name(), flag.substr(1), flag));
     }
+}
+
+/// Where a file is missing: the option, of a list, that may have taken it for one of its values.
+std::string ExplainMissing(CLI::App const& verb) {
+    auto const options = verb.get_options();
+    bool const isMissing = std::ranges::any_of(options, [](CLI::Option const* option) {
+        return option->get_positional() && option->get_required() && option->count() == 0;
+    });
+    auto const taker = std::ranges::find_if(options, [](CLI::Option const* option) {
+        return option->nonpositional() && option->count() > 0 &&
+               (option->get_items_expected_max() > 1 || option->get_allow_extra_args());
+    });
+    if (!isMissing || taker == options.end()) return "";
+    return fmt::format("; files stand before {}, which takes all words that follow it",
+                       (*taker)->get_name());
 }
 
 }  // namespace
@@ -96,11 +117,13 @@ Parser::Parser() {
     _app.set_version_flag("--version", GetVersionText(), kVersionHelp);
     _app.require_subcommand(1);
     _app.get_formatter()->column_width(34);
+    _app.get_formatter()->label("SUBCOMMAND", "VERB");
     _app.option_defaults()->always_capture_default();
     _verbs = {AddInfo(_app),    AddEval(_app),  AddBake(_app),   AddRefine(_app),
               AddMeasure(_app), AddFit(_app),   AddBands(_app),  AddDenoise(_app),
               AddSharpen(_app), AddMorph(_app), AddSmooth(_app), AddField(_app)};
     for (Verb const& verb : _verbs) {
+        verb.app->group("Verbs");
         verb.app->set_version_flag("--version", GetVersionText(), kVersionHelp);
         AddCommonOptions(*verb.app, _common);
         TakeDefaults(*verb.app, _defaults);
@@ -176,12 +199,14 @@ std::optional<std::string> Parser::Parse(std::vector<std::string> const& argumen
 /// Says what is wrong. An option that there is not comes before what is missing: it may be that.
 void Parser::Refuse(CLI::ParseError const& error) const {
     auto const parsed = _app.get_subcommands();
-    CLI::App const& verb = parsed.empty() ? _app : *parsed[0];
-    std::string const tellsMore =
-        fmt::format("({} --help tells more)", parsed.empty() ? "limn" : "limn " + verb.get_name());
+    if (parsed.empty())
+        throw Error(ErrorCode::BadOption, "a verb is required (limn --help lists them)");
+    CLI::App const& verb = *parsed[0];
+    std::string const tellsMore = fmt::format("(limn {} --help tells more)", verb.get_name());
     auto const offenders = verb.remaining();
     if (offenders.empty())
-        throw Error(ErrorCode::BadOption, fmt::format("{} {}", error.what(), tellsMore));
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("{}{} {}", error.what(), ExplainMissing(verb), tellsMore));
     std::string const offender = FindOffender(offenders);
     if (!IsFlag(offender)) {
         throw Error(ErrorCode::BadOption, fmt::format("{}: '{}' is one argument too many {}",

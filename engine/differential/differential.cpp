@@ -239,8 +239,9 @@ void CheckOptions(Model const& model, DifferentialOptions const& options) {
     Index const numVertices = model.GetCage().numVertices;
     auto const check = [&](Index vertex) {
         if (vertex >= 0 && vertex < numVertices) return;
-        throw Error(ErrorCode::BadMesh, fmt::format("the edit names vertex {}; there are 0 to {}",
-                                                    vertex, numVertices - 1));
+        throw Error(ErrorCode::BadMesh,
+                    fmt::format("{}: the edit names vertex {}; there are 0 to {}", model.GetPath(),
+                                vertex, numVertices - 1));
     };
     for (auto const& factor : options.edit.factors) check(factor.vertex);
     for (auto const& rotation : options.edit.rotations) check(rotation.vertex);

@@ -34,12 +34,15 @@ double FindLargest(Form const& values) {
     return largest;
 }
 
-Form Spread(std::vector<FieldStrength> const& strengths, Index count, char const* what) {
+/// \param what  "a vortex: face", of each strength
+Form Spread(Model const& model, std::vector<FieldStrength> const& strengths, Index count,
+            char const* what) {
     Form values(static_cast<size_t>(count), 0.0);
     for (FieldStrength const& strength : strengths) {
         if (strength.element < 0 || strength.element >= count) {
-            throw Error(ErrorCode::BadMesh, fmt::format("{} {} does not exist; there are 0 to {}",
-                                                        what, strength.element, count - 1));
+            throw Error(ErrorCode::BadMesh,
+                        fmt::format("{}: {} {} does not exist; there are 0 to {}", model.GetPath(),
+                                    what, strength.element, count - 1));
         }
         values[strength.element] += strength.strength;
     }
@@ -85,13 +88,15 @@ Design DesignControlForm(Model const& model, FieldOptions const& options, Job& j
     eval::FieldDesigner designer(level, model.GetPositions(), options.atBoundary);
     auto const& ofFace = designer.GetComponents().ofFace;
     auto const& ofVertex = designer.GetComponentOfVertex();
-    Form sources = Spread(options.sources, level.GetNumVertices(), "vertex");
-    Form vortices = Spread(options.vortices, level.GetNumFaces(), "face");
+    Form sources =
+        Spread(model, options.sources, level.GetNumVertices(), "a source or sink: vertex");
+    Form vortices = Spread(model, options.vortices, level.GetNumFaces(), "a vortex: face");
     for (FieldStrength const& source : options.sources) {
         if (ofVertex[source.element] < 0)
             throw Error(ErrorCode::BadMesh,
-                        fmt::format("vertex {} has no faces, so that no field can flow there",
-                                    source.element));
+                        fmt::format("{}: a source or sink: vertex {} has no faces, so that no "
+                                    "field can flow there",
+                                    model.GetPath(), source.element));
     }
     Balance(model, designer.FindSourceImbalance(sources), ofVertex, ofFace, "sources and sinks",
             options.isBalanced, sources);

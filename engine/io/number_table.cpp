@@ -169,7 +169,11 @@ NumberTable ReadNumberTable(std::string const& path,
 int GetIndex(NumberTable const& table, std::string const& path, size_t row, size_t column,
              int count, char const* what) {
     double const value = table.Get(row, column);
-    if (!(value >= 0.0 && value < count) || value != std::floor(value)) {
+    if (value != std::floor(value)) {
+        throw Error(ErrorCode::BadMesh, fmt::format("{}:{}: {} {} is no whole number", path,
+                                                    table.lines[row], what, value));
+    }
+    if (!(value >= 0.0 && value < count)) {
         throw Error(ErrorCode::BadMesh,
                     fmt::format("{}:{}: {} {} does not exist; there are 0 to {}", path,
                                 table.lines[row], what, value, count - 1));

@@ -203,7 +203,7 @@ public:
         for (Index& vertex : cage.faceVertices) vertex = _newOf[vertex];
         cage.numVertices = _numNew;
         _scene.normals.clear();
-        _scene.weld = {tolerance, numOld - _numNew, WarnOfApart()};
+        _scene.weld = {tolerance, numOld - _numNew, WarnOfApart(tolerance)};
     }
 
 private:
@@ -365,19 +365,22 @@ private:
     }
 
     /// Returns how many vertices stay apart.
-    Index WarnOfApart() {
+    Index WarnOfApart(double tolerance) {
         Index count = 0, first = -1;
         for (Index old = 0; old < static_cast<Index>(_newOf.size()); ++old) {
             if (_joining.GetApart(old) == Apart::No) continue;
             if (count++ == 0) first = old;
         }
         if (count == 0) return 0;
+        bool const isThirdFace = _joining.GetApart(first) == Apart::ThirdFace;
         Warn(fmt::format(
-            "{} boundary vertices coincide with others and stay apart, first vertex {}: "
-            "joined, {}",
-            count, first,
-            _joining.GetApart(first) == Apart::ThirdFace ? "an edge would have more than two faces"
-                                                         : "a face would have a corner twice"));
+            "{} boundary vertices {} and stay apart, first vertex {}: joined, {}{}", count,
+            tolerance > 0.0 ? fmt::format("lie within {:g} of others", tolerance)
+                            : "coincide with others",
+            first,
+            isThirdFace ? "an edge would have more than two faces"
+                        : "a face would have a corner twice",
+            tolerance > 0.0 && !isThirdFace ? "; use a `weld` far below the length of edges" : ""));
         return count;
     }
 

@@ -35,8 +35,9 @@ Triangle MeasureTriangle(Far::TopologyLevel const& level, Points points, Index f
     auto const vertices = level.GetFaceVertices(face);
     if (vertices.size() != 3) {
         throw Error(ErrorCode::Unsupported,
-                    fmt::format("face {} has {} corners; this Laplacian needs triangles", face,
-                                vertices.size()));
+                    fmt::format("face {} has {} corners; this Laplacian needs triangles, "
+                                "`laplacian` combinatorial takes all",
+                                face, vertices.size()));
     }
     Triangle triangle{{vertices[0], vertices[1], vertices[2]}, {}, {}, 0.0};
     std::array<double, 3> dots;

@@ -196,8 +196,9 @@ TEST_F(Choices, AMissedBoundIsStatus4AndTheFilesStay) {
     EXPECT_TRUE(Contains(error, "12.5664 is expected")) << error;
     EXPECT_TRUE(Contains(error, "--size or --samples")) << error;
     EXPECT_TRUE(fs::exists(folder / "a.exr"));
-    for (Words const& bound :
-         {Words{"--seam-bound", "1e-9"}, {"--seam-bound", "1e9", "--seam-bound", "mean=1e-9"}}) {
+    for (Words const& bound : {Words{"--seam-bound", "1e-9"},
+                               {"--seam-bound", "1e9", "--seam-bound", "mean=1e-9"},
+                               {"--seam-bound", "1e9,mean=1e-9"}}) {
         EXPECT_TRUE(Contains(
             ExpectError(BakeAloud(spot, "b.exr", Words{"--audit", "--size", "512"} + bound), 4,
                         "map mean"),

@@ -95,10 +95,13 @@ TEST_F(CliDifferential, WhatIsNotThereIsStatus3) {
     ExpectError(Refine(Mesh("icosa"), differential + Words{"--handle", "99"}), 3,
                 "handle 99: there are vertices 0 to 11");
     ExpectError(Refine(Mesh("icosa"), differential + Words{"--edit", edit}), 3,
-                "the edit names vertex 99; there are 0 to 11");
+                Mesh("icosa") + ": the edit names vertex 99; there are 0 to 11");
     ExpectError(Refine(Mesh("cube"), differential + Words{"--rule", "butterfly"}), 3,
-                "face 0 has 4 corners");
-    ExpectError(Refine(Mesh("cube"), {"--rule", "loop"}), 3, "face 0 has 4 corners");
+                "has 4 corners; --rule butterfly takes triangles only, --rule catmark all");
+    ExpectError(Refine(Mesh("cube"), {"--rule", "loop"}), 3,
+                "has 4 corners; --rule loop takes triangles only, --rule catmark all");
+    ExpectError(Refine(Mesh("cube"), differential + Words{"--laplacian", "cotangent"}), 3,
+                "--laplacian combinatorial takes all");
     ExpectError(Refine(Mesh("cube"), {"--curve"}), 3, "no polylines");
     ExpectError(Refine(Mesh("icosa"), differential + Words{"--edit", folder / "none.json"}), 5,
                 "none.json");

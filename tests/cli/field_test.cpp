@@ -165,8 +165,9 @@ TEST_F(CliField, WhatIsWrongIsNamed) {
         EXPECT_FALSE(std::filesystem::exists(folder / "f.obj"));
     };
     refuse({cube}, 2, "at least one of");
-    refuse({cube, "--source", "8", "--sink", "0"}, 3, "vertex 8 does not exist; there are 0 to 7");
-    refuse({cube, "--vortex", "-1"}, 3, "face -1 does not exist");
+    refuse({cube, "--source", "8", "--sink", "0"}, 3,
+           "a source or sink: vertex 8 does not exist; there are 0 to 7");
+    refuse({cube, "--vortex", "-1"}, 3, "a vortex: face -1 does not exist");
     refuse({cube, "--source", "x"}, 2, "--source: 'x' is no whole number");
     refuse({cube, "--source", "1:nan"}, 2, "'nan' is no number");
     refuse({cube, "--source", "1:2", "--sink", "3"}, 3, "add up to 1, not 0");

@@ -147,6 +147,12 @@ TEST_F(CutCube, FramesAreWeldedWithTheirMesh) {
     EXPECT_TRUE(row.starts_with("0,0,0,-0.5,-0.5,-0.5,")) << row;
 }
 
+TEST_F(CutCube, AToleranceAboveAnEdgeIsToldOf) {
+    Outcome const outcome = Limn({"info", MakeCutCube(), "--weld", "5"});
+    EXPECT_TRUE(Contains(outcome.out + outcome.err, "lie within 5 of others and stay apart"));
+    EXPECT_TRUE(Contains(outcome.out + outcome.err, "use a --weld far below the length of edges"));
+}
+
 TEST_F(CutCube, ABadToleranceIsAUsageError) {
     std::string const mesh = MakeCutCube();
     ExpectError(Limn({"info", mesh, "--weld", "-1"}), 2, "--weld is -1");

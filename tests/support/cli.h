@@ -47,7 +47,7 @@ inline bool Contains(std::string const& text, std::string const& part) {
 inline Words ListVerbs() {
     Words verbs;
     auto const lines = Lines(Limn({"--help"}).out);
-    auto line = std::find(lines.begin(), lines.end(), "Subcommands:");
+    auto line = std::find(lines.begin(), lines.end(), "Verbs:");
     while (line != lines.end() && ++line != lines.end() && line->starts_with("  "))
         verbs.push_back(line->substr(2, line->find(' ', 2) - 2));
     return verbs;

@@ -117,7 +117,7 @@ void CheckBounds(AuditBounds const& bounds, std::vector<std::string> const& maps
         RequireBound("seam", bound);
         if (std::ranges::find(maps, map) != maps.end()) continue;
         throw Error(ErrorCode::BadOption,
-                    fmt::format("`seam` '{}={:g}': that map is not baked", map, bound));
+                    fmt::format("`seam` {0}={1:g}: the map '{0}' is not baked", map, bound));
     }
 }
 

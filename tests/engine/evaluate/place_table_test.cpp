@@ -32,6 +32,13 @@ TEST(PlaceTable, NamesRowAndLineOfAPlaceThatIsRefused) {
               folder / "p.csv" + ": row 1 (line 4): face 9 does not exist; faces are 0 to 5");
 }
 
+TEST(PlaceTable, AFaceInFractionsIsNoWholeNumber) {
+    test::TemporaryFolder const folder;
+    std::string const path = folder.Write("p.csv", "face,s,t\n0.5,0,0\n");
+    EXPECT_EQ(test::RefusalOf([&] { engine::ReadPlaces(path); }),
+              path + ":2: face 0.5 is no whole number");
+}
+
 TEST(PlaceTable, OtherErrorsPassUnchanged) {
     engine::PlaceTable const table;
     EXPECT_EQ(test::RefusalOf([&] {
