@@ -18,6 +18,7 @@
 #include "engine/cli/names.h"
 #include "engine/cli/option_names.h"
 #include "engine/cli/option_rules.h"
+#include "engine/cli/options/bake_values.h"
 #include "engine/cli/options/choices.h"
 #include "engine/cli/options/nearest_words.h"
 #include "engine/cli/options/number_option.h"
@@ -56,33 +57,6 @@ void ParseTiles(std::vector<std::string> const& texts, engine::BakeOptions& opti
                              : parse(std::string_view(text).substr(dash + 1), first);
         for (int tile = first; tile <= last; ++tile) options.tiles.push_back(tile);
     }
-}
-
-/// "scale,offset".
-engine::Encoding ParseEncoding(std::string const& text) {
-    size_t const comma = text.find(',');
-    if (comma == std::string::npos) {
-        throw Error(ErrorCode::BadOption, "--encode: scale,offset is needed, e.g. 0.5,0.5");
-    }
-    return {ParseNumber<double>("--encode", std::string_view(text).substr(0, comma)),
-            ParseNumber<double>("--encode", std::string_view(text).substr(comma + 1))};
-}
-
-/// "auto", or "X,Y,Z".
-engine::Origin ParseOrigin(std::string const& text) {
-    if (text == "auto") return engine::AutomaticOrigin{};
-    if (std::ranges::count(text, ',') != 2) {
-        throw Error(ErrorCode::BadOption,
-                    fmt::format("--origin: '{}' is neither X,Y,Z nor auto", text));
-    }
-    std::array<double, 3> point{};
-    std::istringstream words(text);
-    for (double& coordinate : point) {
-        std::string word;
-        std::getline(words, word, ',');
-        coordinate = ParseNumber<double>("--origin", word);
-    }
-    return point;
 }
 
 /// "mean,normal", or kAllMaps.
