@@ -145,7 +145,7 @@ void Command::SetContext(Context* context) {
 }
 
 void Command::GiveUp(int status) {
-    RunEnd const end{status, kInterrupted};
+    RunEnd end{status, kInterrupted};
     _contextMutex.lock();  // for good: from here on the run can only wait
     Attempt(
         [&] {

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <thread>
 
@@ -31,6 +32,20 @@ std::unique_ptr<test::Process> StartLongBake(test::TemporaryFolder const& folder
     }
     ADD_FAILURE() << "no temporary appeared";
     return process;
+}
+
+/// Waits until the process takes signals in its own way; before that the system's way ends it.
+void WaitUntilSignalsAreTaken(test::Process const& process) {
+    std::string const path = "/proc/" + std::to_string(process.GetPid()) + "/status";
+    for (int i = 0; i < 10000; ++i) {
+        std::ifstream status(path);
+        for (std::string line; std::getline(status, line);) {
+            if (!line.starts_with("SigBlk:")) continue;
+            if (std::stoull(line.substr(7), nullptr, 16) & (1ull << (SIGINT - 1))) return;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ADD_FAILURE() << "signals are not blocked";
 }
 
 class Signal : public testing::TestWithParam<int> {};
@@ -75,7 +90,7 @@ TEST_F(Cli, HangUpThatIsIgnoredStaysSo) {
         LIMN_PROGRAM, "bake", Shape("catmark_cube"), "-o", folder / "a.exr", "--maps", "mean",
         "--size",     "512",  "--samples",           "4",  "--quiet"};
     test::Process process(words, {.ignoredSignal = SIGHUP});
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    WaitUntilSignalsAreTaken(process);
     process.Send(SIGHUP);
     EXPECT_EQ(process.Wait().status, 0);
     EXPECT_EQ(folder.List(), (Words{"a.exr"}));
@@ -110,7 +125,7 @@ TEST_F(Cli, PipeThatNobodyWritesToCanBeInterrupted) {
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
     test::Process process(
         {LIMN_PROGRAM, "refine", pipe, "-o", folder / "a.obj", "--report", folder / "r.json"});
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    WaitUntilSignalsAreTaken(process);
     process.Send(SIGINT);
     ExpectError(process.Wait(), 130, "interrupted");
     EXPECT_EQ(folder.List(), (Words{"mesh.obj", "r.json"}));
@@ -121,7 +136,7 @@ TEST_F(Cli, PipeThatNobodyReadsCanBeInterrupted) {
     std::string const pipe = folder / "a.obj";
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
     test::Process process({LIMN_PROGRAM, "refine", Shape("catmark_cube"), "-o", pipe});
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    WaitUntilSignalsAreTaken(process);
     process.Send(SIGINT);
     ExpectError(process.Wait(), 130, "interrupted");
 }
@@ -134,7 +149,7 @@ TEST_F(Cli, FullStderrThatNobodyReadsCanBeInterrupted) {
     test::Process process({LIMN_PROGRAM, "bake", Shape("catmark_cube"), "-o", folder / "a.exr",
                            "--maps", "mean,normal"},  // warns that all go into one file
                           {.stderrPath = pipe});
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    WaitUntilSignalsAreTaken(process);
     process.Send(SIGINT);
     EXPECT_EQ(process.Wait().status, 130);
     EXPECT_EQ(folder.List(), (Words{"pipe"}));

@@ -15,9 +15,10 @@
 namespace limn {
 namespace {
 
-auto const ConvertToHalf = [](auto... arguments) {
+template <class... Arguments>
+size_t ConvertToHalf(Arguments... arguments) {
     return eval::GetKernel<engine::PixelKernel>().convertToHalf(arguments...);
-};
+}
 
 // Imath's own conversion is the reference, over a stride of all floats in the range of half.
 TEST(ConvertToHalf, RoundsLikeImath) {
