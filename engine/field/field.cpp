@@ -81,6 +81,18 @@ struct Design {
     FieldAudit audit;
 };
 
+/// Refuses sources at vertices without faces.
+void RequireFaces(Model const& model, std::vector<FieldStrength> const& sources,
+                  std::vector<int> const& componentOf) {
+    for (FieldStrength const& source : sources) {
+        if (componentOf[source.element] < 0)
+            throw Error(ErrorCode::BadMesh,
+                        fmt::format("{}: a source or sink: vertex {} has no faces, so that no "
+                                    "field can flow there",
+                                    model.GetPath(), source.element));
+    }
+}
+
 Design DesignControlForm(Model const& model, FieldOptions const& options, Job& job) {
     auto const& level = model.GetLevel();
     FieldAudit audit;
@@ -91,13 +103,7 @@ Design DesignControlForm(Model const& model, FieldOptions const& options, Job& j
     Form sources =
         Spread(model, options.sources, level.GetNumVertices(), "a source or sink: vertex");
     Form vortices = Spread(model, options.vortices, level.GetNumFaces(), "a vortex: face");
-    for (FieldStrength const& source : options.sources) {
-        if (ofVertex[source.element] < 0)
-            throw Error(ErrorCode::BadMesh,
-                        fmt::format("{}: a source or sink: vertex {} has no faces, so that no "
-                                    "field can flow there",
-                                    model.GetPath(), source.element));
-    }
+    RequireFaces(model, options.sources, ofVertex);
     Balance(model, designer.FindSourceImbalance(sources), ofVertex, ofFace, "sources and sinks",
             options.isBalanced, sources);
     Balance(model, designer.FindVortexImbalance(vortices), ofFace, ofFace, "vortices",

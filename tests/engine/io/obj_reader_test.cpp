@@ -14,17 +14,12 @@ namespace limn {
 namespace {
 
 using engine::Scene;
-using test::Refusal;
 
 Scene Parse(std::string const& text) {
     Scene scene;
     scene.path = "mesh.obj";
     engine::ReadObj(text, scene);
     return scene;
-}
-
-std::string RefusalOfText(std::string const& text) {
-    return test::RefusalOf([&] { Parse(text); });
 }
 
 std::string const kQuadVertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -402,174 +397,6 @@ TEST(ObjReader, ManyGroupsTakeTimeInProportion) {
     EXPECT_EQ(std::count(selected.begin(), selected.end(), 1), kCount);
     EXPECT_EQ(engine::SelectGroups(scene, {"part7"})[7], 1);
 }
-
-// -------- refusals: file and line, what is wrong, what would be right
-
-class ObjRefusal : public testing::TestWithParam<Refusal> {};
-
-TEST_P(ObjRefusal, NamesLineReasonAndRemedy) {
-    test::ExpectRefusal(GetParam(), RefusalOfText(GetParam().text));
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Of, ObjRefusal,
-    testing::Values(
-        Refusal{"NotANumber",
-                "v 0 zero 0\n",
-                "mesh.obj:1: ",
-                {"y is 'zero'", "finite number is needed"}},
-        Refusal{"MissingNumber", "v 0 0\n", "mesh.obj:1: ", {"z is missing"}},
-        Refusal{"NumberWithATail", "v 0 0 1.5x\n", "mesh.obj:1: ", {"z is '1.5x'"}},
-        Refusal{"CommaForAPoint", "v 0 0 1,5\n", "mesh.obj:1: ", {"z is '1,5'"}},
-        Refusal{"NumberBeyondDouble",
-                "v 0 0 1e999\n",
-                "mesh.obj:1: ",
-                {"z is '1e999'", "at most 1e+30 in magnitude"}},
-        Refusal{"Nan", "v nan 0 0\n", "mesh.obj:1: ", {"x is 'nan'", "finite number is needed"}},
-        Refusal{"NegativeNan", "v 0 -nan 0\n", "mesh.obj:1: ", {"y is '-nan'"}},
-        Refusal{"WindowsNan", "v 0 0 1.#IND\n", "mesh.obj:1: ", {"z is '1.#IND'"}},
-        Refusal{
-            "Infinity", "v 0 inf 0\n", "mesh.obj:1: ", {"y is 'inf'", "finite number is needed"}},
-        Refusal{"NegativeInfinity", "v 0 0 -Infinity\n", "mesh.obj:1: ", {"z is '-Infinity'"}},
-        Refusal{"NanInATextureCoordinate", "v 0 0 0\nvt 0 NaN\n", "mesh.obj:2: ", {"v is 'NaN'"}},
-        Refusal{"NanInASharpness",
-                kQuad + "t crease 2/1/0 0 1 nan\n",
-                "mesh.obj:6: ",
-                {"sharpness", "'nan'"}},
-        Refusal{"IndexZero",
-                kQuadVertices + "f 0 1 2\n",
-                "mesh.obj:5: ",
-                {"vertex index is '0'", "1 to 4"}},
-        Refusal{"IndexTooLarge",
-                kQuadVertices + "f 1 2 5\n",
-                "mesh.obj:5: ",
-                {"vertex index is '5'", "1 to 4"}},
-        Refusal{"IndexTooNegative",
-                kQuadVertices + "f 1 2 -5\n",
-                "mesh.obj:5: ",
-                {"vertex index is '-5'", "-4 to -1"}},
-        Refusal{"IndexBeyond32Bits",
-                kQuadVertices + "f 1 2 4294967297\n",
-                "mesh.obj:5: ",
-                {"4294967297", "1 to 4"}},
-        Refusal{"IndexBeyond64Bits",
-                kQuadVertices + "f 1 2 18446744073709551617\n",
-                "mesh.obj:5: ",
-                {"1 to 4"}},
-        Refusal{"IndexOfAHundredThousandDigits",
-                kQuadVertices + "f 1 2 " + std::string(100000, '7') + "\n",
-                "mesh.obj:5: ",
-                {"1 to 4"}},
-        Refusal{"IndexWithAFraction",
-                kQuadVertices + "f 1 2 3.5\n",
-                "mesh.obj:5: ",
-                {"'3.5'", "v/vt/vn"}},
-        Refusal{"IndexThatIsAWord",
-                kQuadVertices + "f 1 2 three\n",
-                "mesh.obj:5: ",
-                {"'three'", "integer is needed"}},
-        Refusal{"FaceBeforeItsVertices",
-                "f 1 2 3\n" + kQuadVertices,
-                "mesh.obj:1: ",
-                {"no vertex stands before this line"}},
-        Refusal{"TextureIndexWithoutAny",
-                kQuadVertices + "f 1/1 2/1 3/1\n",
-                "mesh.obj:5: ",
-                {"texture index is '1'"}},
-        Refusal{"TextureIndexTooLarge",
-                kQuadVertices + "vt 0 0\nf 1/1 2/2 3/1\n",
-                "mesh.obj:6: ",
-                {"texture index is '2'", "1 to 1"}},
-        Refusal{"TextureIndexOnSomeCorners",
-                kQuadVertices + "vt 0 0\nf 1/1 2 3/1\n",
-                "mesh.obj:6: ",
-                {"2 of a face's 3", "all or none"}},
-        Refusal{"JoinedLines",
-                kQuadVertices + "f 1 2 \\\n3 \\\n5\nf 1 2 3\n",
-                "mesh.obj:5: ",
-                {"vertex index is '5'"}},
-        Refusal{"FreeFormOnly",
-                kQuadVertices + "cstype bezier\ndeg 3 3\nsurf 0 1 0 1 1 2 3 4\nend\n",
-                "mesh.obj:8: ",
-                {"no faces", "free form", "polygons"}},
-        Refusal{"FaceWithTwoCorners",
-                kQuadVertices + "f 1 2\n",
-                "mesh.obj:5: ",
-                {"2 corners", "at least 3"}},
-        Refusal{"FaceWithoutCorners",
-                kQuadVertices + "f\n",
-                "mesh.obj:5: ",
-                {"0 corners", "at least 3"}},
-        Refusal{"NoFaces",
-                kQuadVertices + "l 1 2 3\n",
-                "mesh.obj:5: ",
-                {"no faces", "limn needs polygons"}},
-        Refusal{"CutShort",
-                kQuadVertices + "v 5 5 5\nf 1 2 3",
-                "mesh.obj:6: ",
-                {"2 vertices unused", "cut short"}},
-        Refusal{"Utf16",
-                std::string("\xfe\xff\0v\0 \0000", 8),
-                "mesh.obj:1: ",
-                {"not text", "UTF-8 is needed"}},
-        Refusal{"ControlCharacters", std::string("\x01\x02\x03\n"), "mesh.obj:1: ", {"not text"}},
-        Refusal{"CreaseOfAVertexThatIsNot",
-                kQuad + "t crease 2/1/0 0 4 1\n",
-                "mesh.obj:6: ",
-                {"'crease'", "vertex 4", "0 to 3", "0-based"}},
-        Refusal{"SecondCreaseOfAVertexThatIsNot",
-                kQuad + "t crease 3/1/0 0 1 2 1\nt crease 2/1/0 -1 0 1\n",
-                "mesh.obj:7: ",
-                {"vertex -1", "0 to 3"}},
-        Refusal{"CornerOfAVertexThatIsNot",
-                kQuad + "t corner 1/1/0 4 1\n",
-                "mesh.obj:6: ",
-                {"'corner'", "vertex 4", "0 to 3"}},
-        Refusal{"HoleOfAFaceThatIsNot",
-                kQuad + "t hole 1/0/0 1\n",
-                "mesh.obj:6: ",
-                {"'hole'", "face 1", "0 to 0"}},
-        Refusal{"NegativeSharpness",
-                kQuad + "t crease 2/1/0 0 1 -1\n",
-                "mesh.obj:6: ",
-                {"sharpness is -1", "0 or more"}},
-        Refusal{"CreaseWithoutSharpness",
-                kQuad + "t crease 2/0/0 0 1\n",
-                "mesh.obj:6: ",
-                {"crease", "2/1/0"}},
-        Refusal{"CreaseWithTooFewWords",
-                kQuad + "t crease 2/1/0 0 1\n",
-                "mesh.obj:6: ",
-                {"sharpness is missing"}},
-        Refusal{"CreaseOfABillionVertices",
-                kQuad + "t crease 1000000000/1/0 0 1\n",
-                "mesh.obj:6: ",
-                {"missing"}},
-        Refusal{"TagIndexWithAFraction",
-                kQuad + "t hole 1/0/0 0.5\n",
-                "mesh.obj:6: ",
-                {"0.5 is not an index"}},
-        Refusal{"TagWithoutCounts",
-                kQuad + "t crease 0 1 2\n",
-                "mesh.obj:6: ",
-                {"counts are '0'", "2/1/0"}},
-        Refusal{"UnknownBoundaryRule",
-                kQuad + "t interpolateboundary 1/0/0 3\n",
-                "mesh.obj:6: ",
-                {"interpolateboundary is 3", "edge only"}},
-        Refusal{"UnknownFaceVaryingRule",
-                kQuad + "t facevaryinginterpolateboundary 1/0/0 6\n",
-                "mesh.obj:6: ",
-                {"is 6", "0 to 5"}},
-        Refusal{"UnknownCreaseMethod",
-                kQuad + "t creasemethod 0/0/1 best\n",
-                "mesh.obj:6: ",
-                {"'best'", "'chaikin'"}},
-        Refusal{"UnknownTriangleRule",
-                kQuad + "t smoothtriangles 0/0/1 round\n",
-                "mesh.obj:6: ",
-                {"'round'", "'smooth'"}}),
-    [](testing::TestParamInfo<Refusal> const& instance) { return instance.param.name; });
 
 // -------- hostile bytes
 
