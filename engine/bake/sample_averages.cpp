@@ -69,7 +69,7 @@ void SampleAverages::Finish(int numSamples, Strip& strip) const {
         strip.isCovered[k] = _numHits[k] > 0;
         strip.coverage[k] = static_cast<float>(_numHits[k]) / static_cast<float>(numSamples);
         if (_numHits[k] == 0) continue;
-        float const* lineSum = _lineSums.data() + k;
+        size_t lineSum = k;  // of the next entry
         for (ChannelGroup const& group : _groups) {
             if (group.averaging == Averaging::Count) continue;
             values.clear();
@@ -82,7 +82,7 @@ void SampleAverages::Finish(int numSamples, Strip& strip) const {
             }
             std::array<double, 6> sum;
             for (double& entry : sum) {
-                entry = *lineSum;
+                entry = _lineSums[lineSum];
                 lineSum += numTexels;
             }
             auto const line = FindMainLine(sum);
