@@ -46,18 +46,18 @@ check_sanitizers() {
 # fuzz NAME SECONDS: runs a fuzzer on what it has kept from earlier runs, the seeds, and all that ever
 # failed. What it finds it writes to build/fuzz.
 fuzz() {
-    log="build/fuzz/$1.log"
-    dictionary="build/fuzz/$1.dict"
-    kept="build/fuzz/kept/$1"
-    mkdir -p "$kept"
-    cat /dev/null tests/fuzz/dictionaries/"$1"/*.dict >"$dictionary" 2>/dev/null || true
-    say "fuzzing $1 for $2 seconds"
-    set -- "$1" "$2" "$kept" "tests/fuzz/seeds/$1"
-    if [ -d "tests/fuzz/failed/$1" ]; then set -- "$@" "tests/fuzz/failed/$1"; fi
     name=$1 seconds=$2
-    shift 2
+    log="build/fuzz/$name.log"
+    set -- "build/fuzz/kept/$name" "tests/fuzz/seeds/$name"
+    mkdir -p "$1"
+    if [ -d "tests/fuzz/failed/$name" ]; then set -- "$@" "tests/fuzz/failed/$name"; fi
+    if [ -d "tests/fuzz/dictionaries/$name" ]; then
+        cat tests/fuzz/dictionaries/"$name"/*.dict >"build/fuzz/$name.dict"
+        set -- "-dict=build/fuzz/$name.dict" "$@"
+    fi
+    say "fuzzing $name for $seconds seconds"
     if ! TMPDIR=/dev/shm "build/fuzz/tests/fuzz/${name}_fuzzer" -max_total_time="$seconds" -timeout=20 \
-        -rss_limit_mb=3072 -close_fd_mask=3 -print_final_stats=1 -dict="$dictionary" \
+        -rss_limit_mb=3072 -close_fd_mask=3 -print_final_stats=1 \
         -artifact_prefix="build/fuzz/$name." "$@" >"$log" 2>&1; then
         found=$(sed -n 's/.*Test unit written to //p' "$log" | tail -n 1)
         die "the fuzzer of $name has found ${found:-something}; once it is mended, keep it in tests/fuzz/failed/$name" "$log" 40

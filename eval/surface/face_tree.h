@@ -80,6 +80,7 @@ public:
     /// Nodes, for searches that prune (the UV inversion). The root of a domain:
     int GetRoot(int domain);
     bool IsLeaf(int node) const;
+    size_t GetNumNodes() const { return _nodes.size(); }  ///< made by now, of the current face
     int GetChild(int node, int child);   ///< of a node that is no leaf
     PatchPoint GetLeaf(int node);        ///< of a leaf
     PatchPoint GetLinearLeaf(int node);  ///< of any node: the linear patch of its corners

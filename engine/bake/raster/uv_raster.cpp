@@ -25,6 +25,10 @@ constexpr int kMaxDepth = 30;  // pieces below 2^-30 of a face are linear to any
 // So are pieces that small. Where a face stays irregular along an edge, only this ends the search
 // for a sample on it: pieces multiply with depth, and all of a face that is a point are there.
 constexpr double kLinearTexels = 1e-6;
+// Faces that stay irregular nearly everywhere, as those with one corner twice, have more pieces
+// than memory. From so many on a hundredth of a texel has to do.
+constexpr size_t kManyPieces = 65536;
+constexpr double kLinearTexelsOfMany = 1e-2;
 
 /// Where the run of texels from `begin` on that lie inside and have no owner ends.
 int FindEndOfHits(eval::Whereabouts const* where, Index const* owner, int begin, int end) {
@@ -175,8 +179,8 @@ void UVRaster::RasterNode(int node, int depth, TexelHits& hits) {
     auto const u = _tree.GetBounds(node, 0), v = _tree.GetBounds(node, 1);
     double minX = _grid.ToX(u[0]), maxX = _grid.ToX(u[1]), minY = _grid.ToY(v[1]),
            maxY = _grid.ToY(v[0]);
-    bool const isLinear =
-        depth >= kMaxDepth || (maxX - minX < kLinearTexels && maxY - minY < kLinearTexels);
+    double const linear = _tree.GetNumNodes() < kManyPieces ? kLinearTexels : kLinearTexelsOfMany;
+    bool const isLinear = depth >= kMaxDepth || (maxX - minX < linear && maxY - minY < linear);
     double const slack = 2 * kCoveredTexels;
     minX = std::max(minX - slack, static_cast<double>(_firstColumn));
     maxX = std::min(maxX + slack, static_cast<double>(_lastColumn));

@@ -281,5 +281,13 @@ TEST(UVRaster, AFaceThatIsATexelsCentreIsNoEndlessSearch) {
     EXPECT_EQ(CoverAndCheck(scene, 33).numHits, 0u);
 }
 
+// Half of the pieces of such a face have a corner twice again, down to any depth.
+TEST(UVRaster, AFaceWithOneCornerTwiceIsNoEndlessSearch) {
+    engine::Scene scene = test::MakeScene({0, 0, 0, 1, 0, 0}, {{1, 0, 0}}, Sdc::SCHEME_LOOP);
+    scene.cage.fvarChannels.push_back({2, {0, 1, 1}});
+    scene.uvs = {0.5, 0.5, 0.2890625, 0.734375};
+    for (int size : {15, 16, 64}) CoverAndCheck(scene, size);
+}
+
 }  // namespace
 }  // namespace limn
