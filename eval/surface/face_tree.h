@@ -81,8 +81,8 @@ public:
     int GetRoot(int domain);
     bool IsLeaf(int node) const;
     size_t GetNumNodes() const { return _nodes.size(); }  ///< made by now, of the current face
-    int GetChild(int node, int child);   ///< of a node that is no leaf
-    PatchPoint GetLeaf(int node);        ///< of a leaf
+    int GetChild(int node, int child);                    ///< of a node that is no leaf
+    PatchPoint GetLeaf(int node);                         ///< of a leaf
     PatchPoint GetLinearLeaf(int node);  ///< of any node: the linear patch of its corners
     int GetNumDomains() const { return _numDomains; }
     double const* GetOrigin(int node) const { return &_values[NodeAt(node).origin]; }
