@@ -120,7 +120,7 @@ std::vector<MapRow> const kMapRows{
     {"shape-index"},
     {"curvature"},
     {"principal-direction"},
-    {"position"},
+    {"position", {{"--origin", "0.1,0.2,0.3"}}},
     {"normal", {{"--half=normal"}}},
     {"displacement", {{"--against", "MOVED"}, {"--vector"}}},
     {"stretch"},
