@@ -5,6 +5,8 @@
 
 #include "eval/surface/surface_kernel.h"
 
+#include "eval/kernels/lanes.h"
+
 namespace limn::eval {
 
 namespace {
@@ -33,7 +35,7 @@ inline void EvaluateQuads(Real const* coefficients, Real const* x, Real const* y
                           Real (*ptt)[W]) {
     for (int d = 0; d < 3; ++d) {
         Real const* const c = coefficients + 16 * d;
-#pragma GCC ivdep
+        LIMN_INDEPENDENT_LANES
         for (int l = 0; l < W; ++l) {
             Real const u = x[l], v = y[l];
             Real r[4], rs[4], rss[4];
@@ -73,7 +75,7 @@ inline void EvaluateTriangles(Real const* coefficients, Real const* x, Real cons
     constexpr int kFirst[5] = {0, 5, 9, 12, 14};
     for (int d = 0; d < 3; ++d) {
         Real const* const c = coefficients + 15 * d;
-#pragma GCC ivdep
+        LIMN_INDEPENDENT_LANES
         for (int l = 0; l < W; ++l) {
             Real const u = x[l], v = y[l];
             Real q0 = 0, q1 = 0, q2 = 0, qs0 = 0, qs1 = 0, qss = 0;
@@ -270,7 +272,7 @@ void EvaluateAs(SurfaceBatch<Real> const& batch) {
         }
         if constexpr (Order > 0) {
             unsigned* const degenerate = batch.degenerate + i;
-#pragma GCC ivdep
+            LIMN_INDEPENDENT_LANES
             for (int l = 0; l < W; ++l) {
                 PutLane<Q>(v, orientation, scale, out + l, stride, degenerate + l, l);
             }
