@@ -50,7 +50,7 @@ BakeReport BakeTo(BakeDestination& destination, std::string const& pattern, Mode
     job.Start(fmt::format("baking {}", model.GetName()), numStrips * tiles.size());
     for (int tile : tiles) {
         TileJob tileJob(tile, baker, report.files, options, destination, job);
-        if (tileJob.HasWork()) tileJob.Run();
+        if (tileJob.HasWork() || options.countsSkipped) tileJob.Run();
         tileJob.Finish(report);
     }
     job.Finish();

@@ -31,6 +31,7 @@ struct BakeOptions : MapOptions {
     Orientation orientation = Orientation::Right;
     bool mayBeEmpty = false;  ///< no texel at all is a warning
     bool skipsExisting = false;
+    bool countsSkipped = false;  ///< BakeReport counts texels of skipped files, too, for audits
     bool hasPreview = false, hasPreviewLegend = false;  ///< pictures beside the files
     std::optional<PreviewRange> previewRange;           ///< none: what suits each map
     bool wantsChecksums = false;                        ///< fill BakeOutput::sha256

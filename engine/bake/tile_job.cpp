@@ -117,8 +117,8 @@ void TileJob::Write(PackedStrip& strip) {
     for (size_t f = 0; f < _files.size(); ++f) {
         std::span const leftOut(strip.strip->leftOut.data() + firstMap, _files[f].maps.size());
         firstMap += leftOut.size();
-        if (!_sinks[f]) continue;
         for (TangentialPart const& part : leftOut) _outputs[f].leftOut.Add(part);
+        if (!_sinks[f]) continue;
         PackedStrip::Output& packed = strip.outputs[f];
         _sinks[f]->Write(packed.view, *packed.rows);
         _outputs[f].min = std::min(_outputs[f].min, packed.min);

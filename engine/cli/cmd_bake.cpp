@@ -163,6 +163,7 @@ engine::BakeOptions MakeOptions(BakeArguments const& a, CommonOptions const& com
     ParseTiles(a.tiles, options);
     options.orientation = common.orientation;
     options.wantsChecksums = !common.reportPath.empty();
+    options.countsSkipped = a.hasAudit;
     return options;
 }
 

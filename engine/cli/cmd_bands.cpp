@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "engine/cli/filter_options.h"
+#include "engine/cli/option_rules.h"
 #include "engine/io/mesh_writer.h"
 
 namespace limn::cli {
@@ -32,6 +33,7 @@ Verb AddBands(CLI::App& app) {
     verb->footer(
         "Example:\n  limn bands scenes/spot/spot.obj -o out/spot --count 4 --precision double");
     return {verb, [a](Context& context) {
+                RequirePrefix("-o", a->prefix);
                 std::vector<NamedFile> written{{"-o", a->prefix + ".remainder.obj"}};
                 for (int i = 0; i < a->count; ++i)
                     written.push_back({"-o", NameBand(a->prefix, i)});

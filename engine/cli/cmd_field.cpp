@@ -137,11 +137,23 @@ void KeepFilesApart(FieldArguments const& a, Output output, Context const& conte
                       {{"-o", a.output}, {"-o", vectors}, {"--picture", a.picture}});
 }
 
-int Run(FieldArguments const& a, Context& context) {
+/// Vectors at vertices are limits, which a mesh has all over if its faces are all quads.
+/// \throws Error BadOption: --levels 0 was typed, and is not enough
+void RequireLevels(FieldArguments const& a, Output output, engine::Model const& model,
+                   CLI::App const& verb) {
+    bool const isEnough = a.options.levels > 0 || far_ext::HasRefinedFaces(model.GetCage());
+    if (isEnough || output != Output::Mesh || verb.count("--levels") == 0) return;
+    throw Error(ErrorCode::BadOption,
+                "--levels 0: not all faces are quads, so that vectors at vertices take one level "
+                "at least; use --levels 1, or -o x.faces.csv");
+}
+
+int Run(FieldArguments const& a, CLI::App const& verb, Context& context) {
     Output const output = FindOutput(a.output);
     RequirePngEnding("--picture", a.picture);
     KeepFilesApart(a, output, context);
     auto const model = context.Load(a.mesh);
+    RequireLevels(a, output, model, verb);
     auto options = MakeOptions(a, model.GetLevel());
     options.hasVertexVectors = output == Output::Mesh || !a.picture.empty();
     if (output != Output::Mesh && options.hasVertexVectors && options.levels == 0 &&
@@ -224,7 +236,7 @@ Verb AddField(CLI::App& app) {
     verb->footer(
         "Example:\n  limn field scenes/spot/spot.obj -o out/spot.field.obj --levels 2 --source 0 "
         "--sink 100 --vortex 40 --vortex 150:-1");
-    return {verb, [a](Context& context) { return Run(*a, context); }};
+    return {verb, [a, verb](Context& context) { return Run(*a, *verb, context); }};
 }
 
 }  // namespace limn::cli

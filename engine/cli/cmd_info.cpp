@@ -132,6 +132,7 @@ Verb AddInfo(CLI::App& app) {
                         ? json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"
                         : ToText(model, info);
                 PrintData(text);
+                json.erase("options");  // of a report: the words as typed; "inputs" has the rules
                 context.GetReport()->update(json);
                 return kDone;
             }};

@@ -56,6 +56,7 @@ nlohmann::json ToJson(engine::Measurement const& found) {
 
 int RunMeasure(MeasureArguments const& a, CLI::App const& verb, Context& context) {
     context.KeepStdoutForData(true);
+    RequirePrefix("-o", a.prefix);
     if (a.prefix.empty() && (a.hasHighlight || a.hasPicture)) {
         throw Error(ErrorCode::BadOption,
                     "--highlight and --picture write files; name their beginning with -o");

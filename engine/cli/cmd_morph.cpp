@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "engine/cli/filter_options.h"
+#include "engine/cli/option_rules.h"
 #include "engine/fit/morph.h"
 #include "engine/io/mesh_writer.h"
 
@@ -43,6 +44,7 @@ Verb AddMorph(CLI::App& app) {
     AddAlpha(*verb, a->options.alpha);
     verb->footer("Example:\n  limn morph neutral.obj smile.obj -o out/smile --steps 12");
     return {verb, [a](Context& context) {
+                RequirePrefix("-o", a->prefix);
                 std::vector<NamedFile> written;
                 for (int step = 1; step <= a->steps; ++step)
                     written.push_back({"-o", NameStep(a->prefix, step)});

@@ -87,18 +87,22 @@ engine::DifferentialOptions MakeOptions(RefineArguments const& a, CommonOptions 
     return options;
 }
 
-/// Why the tolerance was missed.
-std::string Explain(engine::DifferentialReport const& found, bool isFit, double tolerance) {
+/// Why the tolerance was missed, and what became of the result.
+std::string Explain(engine::DifferentialReport const& found, bool isFit, double tolerance,
+                    bool isKept) {
+    char const* const then =
+        isKept ? "the result is kept" : "nothing is written without --keep-result";
     if (!isFit) {
         return fmt::format(
-            "the solver stopped at residual {:.1e} after {} iterations; the tolerance is {:.1e}",
-            found.residual, found.iterations, tolerance);
+            "the solver stopped at residual {:.1e} after {} iterations; the tolerance is {:.1e}; "
+            "{}",
+            found.residual, found.iterations, tolerance, then);
     }
     return fmt::format(
         "{:.2g} of the differential coordinates remains unmet after {} steps{}; --tolerance is "
-        "{:.2g}",
+        "{:.2g}; {}",
         found.residual, found.fitSteps, found.hasFitStalled ? ", and more would gain little" : "",
-        tolerance);
+        tolerance, then);
 }
 
 engine::DifferentialResult RefineDifferentially(RefineArguments const& a,
@@ -124,8 +128,9 @@ engine::DifferentialResult RefineDifferentially(RefineArguments const& a,
     report["thin_plate_energy"] = found.energy.mean;
     report["thin_plate_energy_area"] = found.energy.integral;
     if (!found.converged) {
-        context.GetJob().Warn(Explain(found, IsFit(options), GetTolerance(options)) +
-                              (a.keepsResult ? "" : "; nothing is written without --keep-result"));
+        context.MissTarget(
+            fmt::format("{}: {}", a.mesh,
+                        Explain(found, IsFit(options), GetTolerance(options), a.keepsResult)));
     }
     return result;
 }

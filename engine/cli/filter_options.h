@@ -31,6 +31,7 @@ inline nlohmann::json DescribeOutput(std::string const& path, engine::Model cons
                                      std::vector<double> const& positions, Precision precision) {
     auto json = DescribeExtent(model, positions);
     json["file"] = path;
+    json["mesh"] = model.GetPath();
     json["precision_written"] = kPrecisionWords.GetWord(precision);
     return json;
 }

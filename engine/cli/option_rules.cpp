@@ -27,6 +27,13 @@ void RefuseEach(CLI::App const& verb, std::vector<char const*> const& flags,
     }
 }
 
+void RequirePrefix(std::string const& flag, std::string const& prefix) {
+    if (!prefix.ends_with('/')) return;
+    throw Error(ErrorCode::BadOption,
+                fmt::format("{} '{}': a folder; add what the files' names begin with, such as {}a",
+                            flag, prefix, prefix));
+}
+
 void RequirePngEnding(std::string const& flag, std::string const& path) {
     std::string const ending = engine::GetEnding(path);
     if (ending.empty() || ending == ".png") return;

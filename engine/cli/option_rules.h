@@ -17,6 +17,9 @@ void RefuseTogether(CLI::App const& verb, std::vector<char const*> const& flags)
 void RefuseEach(CLI::App const& verb, std::vector<char const*> const& flags,
                 std::string const& why);
 
+/// Refuses a beginning of files' names that is only their folder: the files would be hidden ones.
+void RequirePrefix(std::string const& flag, std::string const& prefix);
+
 /// Refuses a picture's name that promises another format. Without an ending it may be a device or
 /// a pipe.
 void RequirePngEnding(std::string const& flag, std::string const& path);

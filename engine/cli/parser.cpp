@@ -95,6 +95,18 @@ void RefuseSingleDashes(CLI::App const& verb, std::vector<std::string> const& wo
     }
 }
 
+/// Refuses values that are empty, as of a shell's variable that is not set: they would count as if
+/// the option were not there.
+void RefuseEmptyValues(CLI::App const& verb) {
+    for (CLI::Option const* const option : verb.get_options()) {
+        auto const values = option->results();
+        if (!option->nonpositional() || std::ranges::find(values, "") == values.end()) continue;
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("{}: '' is empty; give a value or leave the option out",
+                                option->get_name(false, false)));
+    }
+}
+
 /// Where a file is missing: the option, of a list, that may have taken it for one of its values.
 std::string ExplainMissing(CLI::App const& verb) {
     auto const options = verb.get_options();
@@ -191,6 +203,7 @@ std::optional<std::string> Parser::Parse(std::vector<std::string> const& argumen
     } catch (CLI::ParseError const& error) {
         Refuse(error);
     }
+    for (CLI::App const* const verb : _app.get_subcommands()) RefuseEmptyValues(*verb);
     auto const question =
         std::ranges::find_if(_questions, [](Question const& asked) { return asked.app->parsed(); });
     return question == _questions.end() ? std::nullopt : std::optional(question->answer());

@@ -82,12 +82,9 @@ RunEnd Attempt(Work const& work, std::function<int()> const& getStopStatus) {
     }
 }
 
-/// Status 4 of a run that only warned of what it missed.
-constexpr char const* kSeeWarnings = "what was asked for was not reached; see the warnings";
-
 RunEnd ConcludeRun(int status, Context const& context) {
     if (status == kDone) return {};
-    return {status, context.GetMiss().empty() ? kSeeWarnings : AsLine(context.GetMiss())};
+    return {status, AsLine(context.GetMiss())};
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ private:
             axis[c] = number.is_number() ? number.get<double>() : 0.0;
         }
         if (!(std::hypot(axis[0], axis[1], axis[2]) > 0.0)) {
-            Refuse(fmt::format("'rotate': {} has no axis of three numbers", Show(entry)));
+            Refuse(fmt::format("'rotate': {} has no axis: three numbers, not all 0", Show(entry)));
         }
         return axis;
     }

@@ -24,11 +24,14 @@ constexpr std::string_view kFreeForm[] = {
     "vp",   "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim",  "hole",
     "scrv", "sp",     "end", "con",  "bzp",  "bsp",  "cdc",   "cdp",  "res",  "stech", "ctech"};
 
+/// Statements that take in what stands elsewhere: other files, what commands print.
+constexpr std::string_view kElsewhere[] = {"call", "csh"};
+
 /// Statements that say nothing of a subdivision surface: normals, points and lines, how things
 /// look.
 constexpr std::string_view kWithoutEffect[] = {
-    "vn",       "p",   "l",          "s",         "mtllib", "mg",     "bevel", "c_interp",
-    "d_interp", "lod", "shadow_obj", "trace_obj", "usemap", "maplib", "call",  "csh"};
+    "vn",     "p",        "l",        "s",   "mtllib",     "mg",        "bevel",
+    "maplib", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "usemap"};
 
 bool IsAmong(std::span<std::string_view const> words, std::string_view word) {
     return std::ranges::find(words, word) != words.end();
@@ -216,7 +219,10 @@ private:
     void Skip(std::string_view keyword) {
         CheckIsText(keyword);
         if (IsAmong(kWithoutEffect, keyword)) return;
-        (IsAmong(kFreeForm, keyword) ? _freeForm : _unknown).Add(keyword, _scan.GetLineNumber());
+        SkippedLines& lines = IsAmong(kFreeForm, keyword)    ? _freeForm
+                              : IsAmong(kElsewhere, keyword) ? _elsewhere
+                                                             : _unknown;
+        lines.Add(keyword, _scan.GetLineNumber());
     }
 
     void CheckIsText(std::string_view keyword) const {
@@ -256,6 +262,10 @@ private:
                 _freeForm.GetFirstLine(),
                 fmt::format("curves and surfaces in free form have no effect (export polygons): {}",
                             _freeForm.Describe()));
+        }
+        if (_elsewhere.GetCount() > 0) {
+            Warn(_elsewhere.GetFirstLine(),
+                 fmt::format("what stands in other files is not read: {}", _elsewhere.Describe()));
         }
         if (_unknown.GetCount() > 0) {
             Warn(_unknown.GetFirstLine(),
@@ -314,7 +324,7 @@ private:
     TextScanner _scan;
     Scene& _scene;
     ObjTags _tags;
-    SkippedLines _freeForm, _unknown;
+    SkippedLines _freeForm, _elsewhere, _unknown;
     std::vector<Index> _faceUVs;
     std::vector<float> _colours;
     size_t _numColourChannels = 0, _numUnclearPositions = 0;

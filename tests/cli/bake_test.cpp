@@ -260,6 +260,19 @@ TEST_F(SkipExisting, TellsTheRangesOfWhatItSkips) {
     }
 }
 
+TEST_F(SkipExisting, AuditsWhatItSkipsAsIfItHadBeenBaked) {
+    Words const more{"--audit",         "--audit-bound", "0",
+                     "--skip-existing", "--report",      folder / "r.json"};
+    ASSERT_EQ(Bake(Shape("catmark_cube"), "b.exr", more).status, 4);
+    json const first = Report();
+    EXPECT_TRUE(first["audit"]["gauss_bonnet"][0]["audited"]);
+    EXPECT_EQ(Bake(Shape("catmark_cube"), "b.exr", more).status, 4);
+    json const again = Report();
+    EXPECT_TRUE(again["outputs"][0]["skipped"]);
+    for (char const* key : {"audit", "audits", "error", "texels_covered", "overlaps", "warnings"})
+        EXPECT_EQ(again[key], first[key]) << key;
+}
+
 TEST_F(SkipExisting, MakesThePreviewThatIsMissing) {
     EXPECT_FALSE(fs::exists(folder / "a.png"));
     ASSERT_EQ(BakeAgain({"--preview"}).status, 0);

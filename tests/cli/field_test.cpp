@@ -45,6 +45,15 @@ protected:
     }
 };
 
+TEST_F(CliField, LevelsThatAreTypedAreKeptOrRefused) {
+    Words const typed{"--source", "0", "--sink", "3", "--levels", "0"};
+    std::string const triangles = Shape("catmark_pyramid"), quads = Shape("catmark_cube");
+    ExpectError(Limn(Words{"field", triangles, "-o", folder / "f.obj"} + typed), 2,
+                "--levels 0: not all faces are quads");
+    EXPECT_EQ(Limn(Words{"field", triangles, "-o", folder / "f.faces.csv"} + typed).status, 0);
+    EXPECT_EQ(Limn(Words{"field", quads, "-o", folder / "f.obj"} + typed).status, 0);
+}
+
 TEST_F(CliField, ReportTellsWhatTheFieldIsMadeOf) {
     ASSERT_EQ(
         Limn({"field", spot, "-o", folder / "f.obj", "--levels", "1", "--source", "0", "--sink",

@@ -50,12 +50,13 @@ TEST_F(Reports, OfEveryVerbHaveTheSharedKeys) {
     EXPECT_EQ(verbs, known);
     for (auto const& [verb, words] : runs) {
         SCOPED_TRACE(verb);
-        Outcome const outcome = Limn(words + Words{"--report", folder / "r.json"});
+        Words const typed = words + Words{"--report", folder / "r.json"};
+        Outcome const outcome = Limn(typed);
         ASSERT_EQ(outcome.status, 0) << outcome.err;
         json const report = Report();
         EXPECT_TRUE(report["limn_version"].is_string());
         EXPECT_EQ(report["command"], verb);
-        EXPECT_TRUE(report.contains("options"));
+        EXPECT_EQ(report["options"].get<Words>(), typed);
         EXPECT_EQ(report["inputs"][0]["path"], mesh);
         EXPECT_EQ(report["inputs"][0]["sha256"], engine::Sha256OfFile(mesh));
         EXPECT_TRUE(report["warnings"].is_array());
@@ -64,6 +65,16 @@ TEST_F(Reports, OfEveryVerbHaveTheSharedKeys) {
         EXPECT_EQ(report["exit_status"], 0);
         EXPECT_TRUE(report["error"].is_null());
         EXPECT_TRUE(report["effective_options"].is_object());
+    }
+}
+
+TEST_F(Reports, NameTheMeshOfEachOutput) {
+    for (char const* verb : {"bake", "bands", "morph"}) {
+        SCOPED_TRACE(verb);
+        ASSERT_EQ(Limn(runs.at(verb) + Words{"--report", folder / "r.json"}).status, 0);
+        json const report = Report();
+        for (json const& output : report["outputs"]) EXPECT_EQ(output["mesh"], mesh);
+        EXPECT_FALSE(report["outputs"].empty());
     }
 }
 

@@ -2,6 +2,8 @@
 //
 // Command lines as people type them, right and nearly right.
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "engine/cli/options/option_list.h"
@@ -35,6 +37,29 @@ TEST(Typing, UnknownVerbsAndOptionsAreToldWithTheNearest) {
     expect({"--threads", "4", "info"}, "no option '--threads' before the verb");
     expect({"info", "a.obj", "--scheme", "catmrk"}, "did you mean catmark?");
     expect({"bake", "--maps", "mean"}, "(limn bake --help tells more)");
+}
+
+TEST(Typing, AnEmptyValueIsNoOptionLeftOut) {
+    Words const bake{"bake", "a.obj", "-o", "a.exr", "--maps", "noise"};
+    for (Words const& words : {bake + Words{"--noise-ramp", ""},
+                               bake + Words{"--encode", ""},
+                               bake + Words{"--groups", "red", ""},
+                               bake + Words{"--report", ""},
+                               {"eval", "a.obj", "--at", "p.csv", "--output", ""},
+                               {"measure", "a.obj", "--output", ""},
+                               {"refine", "a.obj", "-o", "b.obj", "--edit", ""},
+                               {"smooth", "a.obj", "-o", "b.obj", "--width-map", ""}}) {
+        std::string const& flag = *(std::ranges::find_if(
+            words.rbegin(), words.rend(), [](auto& w) { return w.starts_with("--"); }));
+        EXPECT_EQ(Refusal(words), flag + ": '' is empty; give a value or leave the option out");
+    }
+}
+
+TEST(Typing, AFolderIsNoBeginningOfNames) {
+    for (Words const& words : {Words{"bands", "a.obj", "--count", "2", "-o", "out/"},
+                               {"morph", "a.obj", "b.obj", "-o", "out/"},
+                               {"measure", "a.obj", "-o", "out/"}})
+        ExpectError(Limn(words), 2, "-o 'out/': a folder; add what the files' names begin with");
 }
 
 TEST(Typing, HelpOfAVerbIsTheSameBothWays) {

@@ -130,6 +130,7 @@ INSTANTIATE_TEST_SUITE_P(
         Usage{"UnknownCompression", BakeWith({"--maps", "mean", "--compression", "lzw"}), "lzw"},
         Usage{"EncodeWithoutOffset", BakeWith({"--maps", "mean", "--encode", "0.5"}), "--encode"},
         Usage{"EncodeNan", BakeWith({"--maps", "mean", "--encode", "nan,0"}), "--encode"},
+        Usage{"EncodeToNothing", BakeWith({"--maps", "mean", "--encode", "0,1"}), "the scale 0"},
         Usage{"UnknownSpace", BakeWith({"--maps", "mean", "--space", "outer"}), "--space"},
         Usage{"DisplacementOfNothing", BakeWith({"--maps", "displacement"}), "--against"},
         Usage{"TensionOfNothing", BakeWith({"--maps", "tension"}), "--rest"},

@@ -9,3 +9,8 @@ using limn::eval::EvaluateSample;
 using limn::eval::SimdEvaluator;
 using limn::far_ext::BuildRefinedStencils;
 using limn::far_ext::CreateRefiner;
+
+// And call it as they did.
+[[maybe_unused]] static limn::eval::SurfaceSample SampleFromInside(limn::eval::FaceTree& tree) {
+    return EvaluateSample(tree, 0, 0.5, 0.5, -1.0);
+}

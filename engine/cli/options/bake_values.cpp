@@ -18,8 +18,15 @@ engine::Encoding ParseEncoding(std::string const& text) {
     if (comma == std::string::npos) {
         throw Error(ErrorCode::BadOption, "--encode: scale,offset is needed, e.g. 0.5,0.5");
     }
-    return {ParseNumber<double>("--encode", std::string_view(text).substr(0, comma)),
-            ParseNumber<double>("--encode", std::string_view(text).substr(comma + 1))};
+    engine::Encoding const encoding{
+        ParseNumber<double>("--encode", std::string_view(text).substr(0, comma)),
+        ParseNumber<double>("--encode", std::string_view(text).substr(comma + 1))};
+    if (encoding.scale == 0.0) {
+        throw Error(
+            ErrorCode::BadOption,
+            fmt::format("--encode: '{}' has the scale 0, which makes all values equal", text));
+    }
+    return encoding;
 }
 
 engine::Origin ParseOrigin(std::string const& text) {

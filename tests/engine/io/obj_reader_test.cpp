@@ -133,6 +133,13 @@ TEST(ObjReader, FreeFormGeometryIsNamedInOneWarning) {
               "4 lines ('vp', 'cstype', 'curv')");
 }
 
+TEST(ObjReader, WhatStandsInOtherFilesIsNamed) {
+    Scene const scene = Parse(kQuad + "call part.obj\ncsh -cat part.obj\n");
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_EQ(scene.warnings[0],
+              "mesh.obj:6: what stands in other files is not read: 2 lines ('call', 'csh')");
+}
+
 TEST(ObjReader, WordsThatObjDoesNotHaveAreNamedInOneWarning) {
     std::string text = kQuad + "vt 0 0\nvn 0 0 1\ns off\nl 1 2\np 1\nmtllib a.mtl\nvf 1 2 3\n";
     for (int i = 0; i < 20; ++i) text += fmt::format("word{} 1\n", i);
