@@ -3,6 +3,8 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
+#include "engine/cli/option_rules.h"
+#include "engine/cli/options/far_limit_option.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/evaluate/evaluate.h"
 #include "engine/evaluate/frames.h"
@@ -15,13 +17,14 @@ namespace {
 
 struct EvalArguments {
     std::string mesh, places, output, frames;
-    std::optional<eval::EvaluatorKind> evaluator;
+    FarLimitArguments far;
 };
 
 void EvaluateFrames(EvalArguments const& a, engine::Model const& model,
                     engine::PlaceTable const& places, Context& context) {
     CommonOptions const& common = context.GetCommon();
-    engine::FrameOptions const options{a.output, common.orientation, common.precision, a.evaluator};
+    engine::FrameOptions const options{a.output, common.orientation, common.precision,
+                                       a.far.evaluator};
     auto const frames = engine::FindFrames(a.frames);
     auto const result = engine::NamingRows(places, [&] {
         return engine::EvaluateFrames(model, places.GetPlaces(), frames, options, context.GetJob());
@@ -29,13 +32,35 @@ void EvaluateFrames(EvalArguments const& a, engine::Model const& model,
     auto const report = context.GetReport();
     report["places_without_limit"] = result.numWithoutLimit;
     report["places_in_table"] = result.numRows;
-    report["evaluator"] = a.evaluator ? GetName(*a.evaluator) : "double";
+    report["evaluator"] = a.far.evaluator ? GetName(*a.far.evaluator) : "double";
     report["frames"] = result.outputs.size();
     report["outputs"] = result.outputs;
     report["precision_written"] = kPrecisionWords.GetWord(result.precision);
 }
 
-int Run(EvalArguments const& a, Context& context) {
+/// The limit at the places, or OpenSubdiv's, which is compared with it.
+engine::LimitValues Evaluate(EvalArguments const& a, engine::Model const& model,
+                             engine::PlaceTable const& places, Context& context) {
+    Orientation const orientation = context.GetCommon().orientation;
+    auto const rule = a.far.GetRule();
+    if (!rule)
+        return engine::EvaluateLimit(model, places.GetPlaces(), orientation, context.GetJob());
+    auto report = engine::CompareFarLimit(model, {places.faces, places.s, places.t}, *rule,
+                                          orientation, context.GetJob());
+    context.GetReport()["far"] = DescribeFarLimit(report);
+    return std::move(report.far.values);
+}
+
+void CheckOptions(EvalArguments const& a, CLI::App const& verb) {
+    RefuseWithoutFarLimit(verb, a.far);
+    bool const isFar = a.far.stencils == LimitStencils::Far;
+    if (isFar) RefuseTogether(verb, {"--limit-stencils", "--frames"});
+    if (a.frames.empty() && !isFar)
+        RefuseEach(verb, {"--evaluator"}, "needs --frames or --limit-stencils far");
+}
+
+int Run(EvalArguments const& a, CLI::App const& verb, Context& context) {
+    CheckOptions(a, verb);
     CommonOptions const& common = context.GetCommon();
     context.KeepStdoutForData(a.output.empty());
     context.KeepApart({{"MESH", a.mesh}, {"--at", a.places}}, {{"-o", a.output}});
@@ -55,10 +80,8 @@ int Run(EvalArguments const& a, Context& context) {
         EvaluateFrames(a, model, places, context);
         return kDone;
     }
-    auto const values = engine::NamingRows(places, [&] {
-        return engine::EvaluateLimit(model, places.GetPlaces(), common.orientation,
-                                     context.GetJob());
-    });
+    auto const values =
+        engine::NamingRows(places, [&] { return Evaluate(a, model, places, context); });
     context.GetReport()["places_without_limit"] = values.CountWithoutLimit();
     context.GetJob().Start("writing " + (a.output.empty() ? "stdout" : a.output));
     Precision const precision = common.precision.value_or(enough);
@@ -82,22 +105,21 @@ Verb AddEval(CLI::App& app) {
     auto* const output =
         verb->add_option("-o,--output", a->output,
                          "CSV to write (default stdout); with --frames a name with {frame}");
-    auto* const frames =
-        verb->add_option(
-                "--frames", a->frames,
-                "the same places in every frame: a folder of meshes, or a file name with {frame}; "
-                "MESH gives topology and tags")
-            ->needs(output);
-    AddWordOption(*verb, "--evaluator", a->evaluator, eval::kEvaluatorWords,
-                  "apply the frames' table in float: simd (limn's), osd-cpu or osd-omp "
-                  "(OpenSubdiv's); default: in double")
-        ->needs(frames);
+    verb->add_option(
+            "--frames", a->frames,
+            "the same places in every frame: a folder of meshes, or a file name with {frame}; "
+            "MESH gives topology and tags")
+        ->needs(output);
+    AddWordOption(*verb, "--evaluator", a->far.evaluator, eval::kEvaluatorWords,
+                  "apply the frames' or far's table in float: simd (limn's), osd-cpu or osd-omp "
+                  "(OpenSubdiv's); default: frames in double, far by osd-cpu");
+    AddFarLimitOptions(*verb, a->far, "in place of the limit");
     verb->footer(
         "Example:\n  printf 'face,s,t\\n0,0.5,0.5\\n' > places.csv\n  limn eval "
         "scenes/spot/spot.obj --at places.csv\n"
         "  limn eval walk.0001.obj --at places.csv --frames 'walk.{frame}.obj' -o "
         "'walk.{frame}.csv'");
-    return {verb, [a](Context& context) { return Run(*a, context); }};
+    return {verb, [a, verb](Context& context) { return Run(*a, *verb, context); }};
 }
 
 }  // namespace limn::cli

@@ -21,4 +21,7 @@ void RefuseEach(CLI::App const& verb, std::vector<char const*> const& flags,
 /// a pipe.
 void RequirePngEnding(std::string const& flag, std::string const& path);
 
+/// Refuses a matrix's name that promises another format. As above.
+void RequireMatrixEnding(std::string const& flag, std::string const& path);
+
 }  // namespace limn::cli

@@ -18,6 +18,9 @@ struct LimitValues {
     std::vector<double> directions;              ///< of k1; lines, their signs are free
     std::vector<char> hasLimit;
 
+    /// Of so many places, none of which has a limit yet.
+    static LimitValues MakeEmpty(size_t numPlaces);
+
     size_t CountWithoutLimit() const;
 };
 
