@@ -4,8 +4,8 @@
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
 #include "engine/cli/option_rules.h"
+#include "engine/cli/options/evaluator_option.h"
 #include "engine/cli/options/far_limit_option.h"
-#include "engine/cli/options/word_option.h"
 #include "engine/evaluate/evaluate.h"
 #include "engine/evaluate/frames.h"
 #include "engine/evaluate/place_table.h"
@@ -21,10 +21,10 @@ struct EvalArguments {
 };
 
 void EvaluateFrames(EvalArguments const& a, engine::Model const& model,
-                    engine::PlaceTable const& places, Context& context) {
+                    engine::PlaceTable const& places, eval::TableEvaluator* evaluator,
+                    Context& context) {
     CommonOptions const& common = context.GetCommon();
-    engine::FrameOptions const options{a.output, common.orientation, common.precision,
-                                       a.far.evaluator};
+    engine::FrameOptions const options{a.output, common.orientation, common.precision, evaluator};
     auto const frames = engine::FindFrames(a.frames);
     auto const result = engine::NamingRows(places, [&] {
         return engine::EvaluateFrames(model, places.GetPlaces(), frames, options, context.GetJob());
@@ -32,7 +32,7 @@ void EvaluateFrames(EvalArguments const& a, engine::Model const& model,
     auto const report = context.GetReport();
     report["places_without_limit"] = result.numWithoutLimit;
     report["places_in_table"] = result.numRows;
-    report["evaluator"] = a.far.evaluator ? GetName(*a.far.evaluator) : "double";
+    if (!evaluator) report["evaluator"] = "double";
     report["frames"] = result.outputs.size();
     report["outputs"] = result.outputs;
     report["precision_written"] = kPrecisionWords.GetWord(result.precision);
@@ -40,9 +40,14 @@ void EvaluateFrames(EvalArguments const& a, engine::Model const& model,
 
 /// The limit at the places, or OpenSubdiv's, which is compared with it.
 engine::LimitValues Evaluate(EvalArguments const& a, engine::Model const& model,
-                             engine::PlaceTable const& places, Context& context) {
+                             engine::PlaceTable const& places, eval::TableEvaluator* evaluator,
+                             Context& context) {
     Orientation const orientation = context.GetCommon().orientation;
     auto const rule = a.far.GetRule();
+    if (!rule && evaluator) {
+        return engine::EvaluateLimit(model, places.GetPlaces(), orientation, *evaluator,
+                                     context.GetJob());
+    }
     if (!rule)
         return engine::EvaluateLimit(model, places.GetPlaces(), orientation, context.GetJob());
     auto report = engine::CompareFarLimit(model, {places.faces, places.s, places.t}, *rule,
@@ -53,15 +58,14 @@ engine::LimitValues Evaluate(EvalArguments const& a, engine::Model const& model,
 
 void CheckOptions(EvalArguments const& a, CLI::App const& verb) {
     RefuseWithoutFarLimit(verb, a.far);
-    bool const isFar = a.far.stencils == LimitStencils::Far;
-    if (isFar) RefuseTogether(verb, {"--limit-stencils", "--frames"});
-    if (a.frames.empty() && !isFar)
-        RefuseEach(verb, {"--evaluator"}, "needs --frames or --limit-stencils far");
+    if (a.far.stencils == LimitStencils::Far)
+        RefuseTogether(verb, {"--limit-stencils", "--frames"});
 }
 
 int Run(EvalArguments const& a, CLI::App const& verb, Context& context) {
     CheckOptions(a, verb);
     CommonOptions const& common = context.GetCommon();
+    auto const evaluator = MakeEvaluator(a.far.evaluator, common);
     context.KeepStdoutForData(a.output.empty());
     context.KeepApart({{"MESH", a.mesh}, {"--at", a.places}}, {{"-o", a.output}});
     auto const model = context.Load(a.mesh);
@@ -77,11 +81,13 @@ int Run(EvalArguments const& a, CLI::App const& verb, Context& context) {
     auto const places = engine::ReadPlaces(a.places);
     context.GetReport()["places"] = places.faces.size();
     if (!a.frames.empty()) {
-        EvaluateFrames(a, model, places, context);
+        EvaluateFrames(a, model, places, evaluator.get(), context);
+        if (evaluator) context.GetReport()["evaluator"] = DescribeEvaluator(*evaluator);
         return kDone;
     }
-    auto const values =
-        engine::NamingRows(places, [&] { return Evaluate(a, model, places, context); });
+    auto const values = engine::NamingRows(
+        places, [&] { return Evaluate(a, model, places, evaluator.get(), context); });
+    if (evaluator) context.GetReport()["evaluator"] = DescribeEvaluator(*evaluator);
     context.GetReport()["places_without_limit"] = values.CountWithoutLimit();
     context.GetJob().Start("writing " + (a.output.empty() ? "stdout" : a.output));
     Precision const precision = common.precision.value_or(enough);
@@ -110,9 +116,7 @@ Verb AddEval(CLI::App& app) {
             "the same places in every frame: a folder of meshes, or a file name with {frame}; "
             "MESH gives topology and tags")
         ->needs(output);
-    AddWordOption(*verb, "--evaluator", a->far.evaluator, eval::kEvaluatorWords,
-                  "apply the frames' or far's table in float: simd (limn's), osd-cpu or osd-omp "
-                  "(OpenSubdiv's); default: frames in double, far by osd-cpu");
+    AddEvaluatorOption(*verb, a->far.evaluator, "the table of places, or far's,");
     AddFarLimitOptions(*verb, a->far, "in place of the limit");
     verb->footer(
         "Example:\n  printf 'face,s,t\\n0,0.5,0.5\\n' > places.csv\n  limn eval "

@@ -46,6 +46,18 @@ LimitValues EvaluateLimit(Model const& model, PlaceArrays const& places, Orienta
     return MakeLimitValues(surface, places.faces, samples);
 }
 
+LimitValues EvaluateLimit(Model const& model, PlaceArrays const& places, Orientation orientation,
+                          eval::TableEvaluator& evaluator, Job& job) {
+    RequireLimit(model);
+    job.Start("building the table of places");
+    eval::LimitSurface const surface(model.GetRefiner());
+    eval::PlaceStencils const stencils(surface, LocatePlaces(model, places));
+    auto const table = evaluator.Make(kPlacesTable, stencils.MakeRows());
+    job.CheckStopped();
+    return MakeLimitValues(surface, places.faces,
+                           stencils.Evaluate(model.GetPositions(), orientation, table));
+}
+
 LimitValues MakeLimitValues(eval::LimitSurface const& surface, std::span<Index const> faces,
                             std::vector<eval::SurfaceSample> const& samples) {
     size_t const count = samples.size();

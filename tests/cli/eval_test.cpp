@@ -230,6 +230,30 @@ TEST_F(Eval, FramesThatCannotBeAreRefused) {
     EXPECT_EQ(folder.List(), (Words{"a.1.obj", "a.2.obj", "p.csv"}));
 }
 
+TEST_F(Eval, AnEvaluatorIsNearTheDoublesAndCountsItsTable) {
+    std::string const rows = "0,0.5,0.5\n3,0.25,0.75\n5,0.1,0.2\n";
+    auto const expected = Lines(At(Shape("catmark_bishop"), rows).out);
+    for (char const* kind : {"simd", "osd-cpu", "osd-omp"}) {
+        Outcome const outcome =
+            At(Shape("catmark_bishop"), rows, {"--evaluator", kind, "--report", folder / "r.json"});
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        auto const lines = Lines(outcome.out);
+        ASSERT_EQ(lines.size(), expected.size());
+        for (size_t row = 1; row < lines.size(); ++row) {
+            for (int column = 3; column < 9; ++column) {
+                EXPECT_NEAR(std::stod(Fields(lines[row])[column]),
+                            std::stod(Fields(expected[row])[column]), 2e-5);
+            }
+        }
+        json const report = Report()["evaluator"];
+        EXPECT_EQ(report["name"], kind);
+        ASSERT_EQ(report["tables"].size(), 1u);
+        EXPECT_EQ(report["tables"][0]["what"], "places");
+        EXPECT_EQ(report["tables"][0]["rows"], 3);
+        EXPECT_EQ(report["tables"][0]["applications"], 1);
+    }
+}
+
 TEST_F(Eval, OpenSubdivsLimitIsWrittenAndComparedWithTheExactOne) {
     std::string const rows = "0,0.5,0.5\n0,0,0\n";
     Outcome const far = At(Shape("catmark_cube"), rows,
