@@ -20,6 +20,7 @@
 #include "engine/cli/option_rules.h"
 #include "engine/cli/options/bake_values.h"
 #include "engine/cli/options/choices.h"
+#include "engine/cli/options/far_limit_option.h"
 #include "engine/cli/options/nearest_words.h"
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/word_option.h"
@@ -32,8 +33,6 @@ namespace limn::cli {
 
 namespace {
 
-constexpr char const* kAllMaps = "all";
-
 struct BakeArguments {
     std::vector<std::string> meshes, tiles, seamBounds;
     std::string size = "2048", against, rest, fieldPath, encode, noiseRamp, previewRange, half;
@@ -42,36 +41,8 @@ struct BakeArguments {
     std::vector<double> view{1.0, 0.6, 0.8};
     engine::AuditBounds bounds;
     engine::BakeOptions options;
+    FarLimitArguments far;
 };
-
-/// "1001" or "1003-1005".
-void ParseTiles(std::vector<std::string> const& texts, engine::BakeOptions& options) {
-    for (std::string const& text : texts) {
-        size_t const dash = text.find('-');
-        auto const parse = [](std::string_view part, int low) {
-            return ParseNumber<int>("--tiles", part, {low, 9999});
-        };
-        int const first = parse(std::string_view(text).substr(0, dash), 1001);
-        int const last = dash == std::string::npos
-                             ? first
-                             : parse(std::string_view(text).substr(dash + 1), first);
-        for (int tile = first; tile <= last; ++tile) options.tiles.push_back(tile);
-    }
-}
-
-/// "mean,normal", or kAllMaps.
-void ParseHalf(std::string const& text, engine::BakeOptions& options) {
-    options.isHalf = !text.empty();
-    if (text.empty() || text == kAllMaps) return;
-    std::istringstream words(text);
-    for (std::string map; std::getline(words, map, ',');) {
-        if (std::ranges::find(options.maps, map) == options.maps.end()) {
-            throw Error(ErrorCode::BadOption,
-                        fmt::format("--half={}: '{}' is no map that is baked", text, map));
-        }
-        options.halfMaps.push_back(map);
-    }
-}
 
 constexpr NumberRange<double> kAnyBound{.low = 0.0};
 
@@ -156,11 +127,12 @@ engine::BakeOptions MakeOptions(BakeArguments const& a, CommonOptions const& com
     if (a.origin) options.origin = ParseOrigin(*a.origin);
     if (!a.noiseRamp.empty()) options.noiseRamp = engine::ColourRamp::Parse(a.noiseRamp);
     if (!a.previewRange.empty()) options.previewRange = engine::PreviewRange::Parse(a.previewRange);
-    ParseHalf(a.half, options);
+    options.isHalf = !a.half.empty();
+    options.halfMaps = ParseHalfMaps(a.half, options.maps);
     auto const [width, height] = ParseTexelSize("--size", a.size, {1, 65536});
     options.width = width;
     options.height = height;
-    ParseTiles(a.tiles, options);
+    options.tiles = ParseTiles(a.tiles);
     options.orientation = common.orientation;
     options.wantsChecksums = !common.reportPath.empty();
     options.countsSkipped = a.hasAudit;
@@ -286,6 +258,19 @@ void DrawPictures(BakeArguments const& a, engine::Model const& model,
     for (std::string const& path : paths) context.GetReport()["pictures"].push_back(path);
 }
 
+/// Compares OpenSubdiv's limit with the one that is baked.
+void CompareFar(engine::FarLimitRule const& rule, engine::Model const& model,
+                std::string const& mesh, Context& context) {
+    engine::PlaceList places;
+    engine::AddVertexPlaces(model, places);
+    engine::AddFaceCentres(model, places);
+    auto json = DescribeFarLimit(engine::CompareFarLimit(
+        model, std::move(places), rule, context.GetCommon().orientation, context.GetJob()));
+    json["mesh"] = mesh;
+    if (!context.GetReport()->contains("far")) context.GetReport()["far"] = json;
+    context.GetReport()["fars"].push_back(std::move(json));
+}
+
 /// Adds what belongs to the mesh's own bake, bakes, draws, and audits. Returns the bounds missed,
 /// in words.
 std::vector<std::string> RunBake(BakeArguments const& a, Bake& bake,
@@ -298,6 +283,7 @@ std::vector<std::string> RunBake(BakeArguments const& a, Bake& bake,
     auto const report = engine::Bake(model, options, context.GetJob());
     AddToReport(context.GetReport(), report);
     DrawPictures(a, model, options, report, context);
+    if (auto const rule = a.far.GetRule()) CompareFar(*rule, model, bake.mesh, context);
     if (!a.hasAudit || report.outputs.empty()) return {};
     auto const audit = engine::Audit(model, options, report, bounds, context.GetJob());
     nlohmann::json json = ToJson(audit, report);
@@ -314,6 +300,7 @@ int Run(BakeArguments const& a, CLI::App const& verb, Context& context) {
     CheckMapNames(a.options.maps);
     RefuseWithoutEffect(verb, a.options.maps);
     RefusePictures(a);
+    RefuseWithoutFarLimit(verb, a.far);
     engine::BakeOptions const options = MakeOptions(a, context.GetCommon());
     engine::AuditBounds const bounds = ParseBounds(a);
     if (a.meshes.size() > 1 && a.options.pattern.find("{mesh}") == std::string::npos) {
@@ -471,6 +458,7 @@ Verb AddBake(CLI::App& app) {
         ->delimiter(',')
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    AddFarLimitOptions(*verb, a->far, "at vertices and face centres, beside the exact texels");
     verb->add_option("--groups", a->options.groups, "only faces of these usemtl, g or o groups")
         ->delimiter(',');
     verb->add_flag("--skip-existing", a->options.skipsExisting,

@@ -3,7 +3,9 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
-#include "engine/cli/options/word_option.h"
+#include "engine/cli/option_rules.h"
+#include "engine/cli/options/evaluator_option.h"
+#include "engine/cli/options/far_limit_option.h"
 #include "engine/evaluate/evaluate.h"
 #include "engine/evaluate/frames.h"
 #include "engine/evaluate/place_table.h"
@@ -15,13 +17,14 @@ namespace {
 
 struct EvalArguments {
     std::string mesh, places, output, frames;
-    std::optional<eval::EvaluatorKind> evaluator;
+    FarLimitArguments far;
 };
 
 void EvaluateFrames(EvalArguments const& a, engine::Model const& model,
-                    engine::PlaceTable const& places, Context& context) {
+                    engine::PlaceTable const& places, eval::TableEvaluator* evaluator,
+                    Context& context) {
     CommonOptions const& common = context.GetCommon();
-    engine::FrameOptions const options{a.output, common.orientation, common.precision, a.evaluator};
+    engine::FrameOptions const options{a.output, common.orientation, common.precision, evaluator};
     auto const frames = engine::FindFrames(a.frames);
     auto const result = engine::NamingRows(places, [&] {
         return engine::EvaluateFrames(model, places.GetPlaces(), frames, options, context.GetJob());
@@ -29,14 +32,40 @@ void EvaluateFrames(EvalArguments const& a, engine::Model const& model,
     auto const report = context.GetReport();
     report["places_without_limit"] = result.numWithoutLimit;
     report["places_in_table"] = result.numRows;
-    report["evaluator"] = a.evaluator ? GetName(*a.evaluator) : "double";
+    if (!evaluator) report["evaluator"] = "double";
     report["frames"] = result.outputs.size();
     report["outputs"] = result.outputs;
     report["precision_written"] = kPrecisionWords.GetWord(result.precision);
 }
 
-int Run(EvalArguments const& a, Context& context) {
+/// The limit at the places, or OpenSubdiv's, which is compared with it.
+engine::LimitValues Evaluate(EvalArguments const& a, engine::Model const& model,
+                             engine::PlaceTable const& places, eval::TableEvaluator* evaluator,
+                             Context& context) {
+    Orientation const orientation = context.GetCommon().orientation;
+    auto const rule = a.far.GetRule();
+    if (!rule && evaluator) {
+        return engine::EvaluateLimit(model, places.GetPlaces(), orientation, *evaluator,
+                                     context.GetJob());
+    }
+    if (!rule)
+        return engine::EvaluateLimit(model, places.GetPlaces(), orientation, context.GetJob());
+    auto report = engine::CompareFarLimit(model, {places.faces, places.s, places.t}, *rule,
+                                          orientation, context.GetJob());
+    context.GetReport()["far"] = DescribeFarLimit(report);
+    return std::move(report.far.values);
+}
+
+void CheckOptions(EvalArguments const& a, CLI::App const& verb) {
+    RefuseWithoutFarLimit(verb, a.far);
+    if (a.far.stencils == LimitStencils::Far)
+        RefuseTogether(verb, {"--limit-stencils", "--frames"});
+}
+
+int Run(EvalArguments const& a, CLI::App const& verb, Context& context) {
+    CheckOptions(a, verb);
     CommonOptions const& common = context.GetCommon();
+    auto const evaluator = MakeEvaluator(a.far.evaluator, common);
     context.KeepStdoutForData(a.output.empty());
     context.KeepApart({{"MESH", a.mesh}, {"--at", a.places}}, {{"-o", a.output}});
     auto const model = context.Load(a.mesh);
@@ -52,13 +81,13 @@ int Run(EvalArguments const& a, Context& context) {
     auto const places = engine::ReadPlaces(a.places);
     context.GetReport()["places"] = places.faces.size();
     if (!a.frames.empty()) {
-        EvaluateFrames(a, model, places, context);
+        EvaluateFrames(a, model, places, evaluator.get(), context);
+        if (evaluator) context.GetReport()["evaluator"] = DescribeEvaluator(*evaluator);
         return kDone;
     }
-    auto const values = engine::NamingRows(places, [&] {
-        return engine::EvaluateLimit(model, places.GetPlaces(), common.orientation,
-                                     context.GetJob());
-    });
+    auto const values = engine::NamingRows(
+        places, [&] { return Evaluate(a, model, places, evaluator.get(), context); });
+    if (evaluator) context.GetReport()["evaluator"] = DescribeEvaluator(*evaluator);
     context.GetReport()["places_without_limit"] = values.CountWithoutLimit();
     context.GetJob().Start("writing " + (a.output.empty() ? "stdout" : a.output));
     Precision const precision = common.precision.value_or(enough);
@@ -82,22 +111,19 @@ Verb AddEval(CLI::App& app) {
     auto* const output =
         verb->add_option("-o,--output", a->output,
                          "CSV to write (default stdout); with --frames a name with {frame}");
-    auto* const frames =
-        verb->add_option(
-                "--frames", a->frames,
-                "the same places in every frame: a folder of meshes, or a file name with {frame}; "
-                "MESH gives topology and tags")
-            ->needs(output);
-    AddWordOption(*verb, "--evaluator", a->evaluator, eval::kEvaluatorWords,
-                  "apply the frames' table in float: simd (limn's), osd-cpu or osd-omp "
-                  "(OpenSubdiv's); default: in double")
-        ->needs(frames);
+    verb->add_option(
+            "--frames", a->frames,
+            "the same places in every frame: a folder of meshes, or a file name with {frame}; "
+            "MESH gives topology and tags")
+        ->needs(output);
+    AddEvaluatorOption(*verb, a->far.evaluator, "the table of places, or far's,");
+    AddFarLimitOptions(*verb, a->far, "in place of the limit");
     verb->footer(
         "Example:\n  printf 'face,s,t\\n0,0.5,0.5\\n' > places.csv\n  limn eval "
         "scenes/spot/spot.obj --at places.csv\n"
         "  limn eval walk.0001.obj --at places.csv --frames 'walk.{frame}.obj' -o "
         "'walk.{frame}.csv'");
-    return {verb, [a](Context& context) { return Run(*a, context); }};
+    return {verb, [a, verb](Context& context) { return Run(*a, *verb, context); }};
 }
 
 }  // namespace limn::cli

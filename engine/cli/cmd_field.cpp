@@ -7,6 +7,7 @@
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/field/field.h"
+#include "engine/field/form_matrices.h"
 #include "engine/images/png.h"
 #include "engine/io/edge_values.h"
 #include "engine/io/file.h"
@@ -20,10 +21,12 @@ namespace limn::cli {
 
 namespace {
 
+constexpr char const* kWriteStencils = "--write-stencils";
+
 struct FieldArguments {
     std::string mesh, output, edgesPath, matchPath, harmonics, picture;
     std::vector<double> view{1.0, 0.6, 0.8};
-    std::vector<std::string> sources, sinks, vortices;
+    std::vector<std::string> sources, sinks, vortices, stencils;
     engine::FieldOptions options;
 };
 
@@ -133,8 +136,20 @@ std::string NameVectors(std::string const& mesh) {
 
 void KeepFilesApart(FieldArguments const& a, Output output, Context const& context) {
     std::string const vectors = output == Output::Mesh ? NameVectors(a.output) : std::string();
+    std::vector<NamedFile> written{{"-o", a.output}, {"-o", vectors}, {"--picture", a.picture}};
+    for (std::string const& path : a.stencils) written.push_back({kWriteStencils, path});
+    if (!a.stencils.empty()) {
+        for (int level : {0, a.options.levels})
+            written.push_back({kWriteStencils, engine::NameEdgeTable(a.stencils[0], level)});
+    }
     context.KeepApart({{"MESH", a.mesh}, {"--edges", a.edgesPath}, {"--match", a.matchPath}},
-                      {{"-o", a.output}, {"-o", vectors}, {"--picture", a.picture}});
+                      written);
+}
+
+void CheckStencils(FieldArguments const& a) {
+    for (std::string const& path : a.stencils) RequireMatrixEnding(kWriteStencils, path);
+    if (!a.stencils.empty() && a.options.levels == 0)
+        throw Error(ErrorCode::BadOption, "--write-stencils: of --levels 0 they change nothing");
 }
 
 /// Vectors at vertices are limits, which a mesh has all over if its faces are all quads.
@@ -151,6 +166,7 @@ void RequireLevels(FieldArguments const& a, Output output, engine::Model const& 
 int Run(FieldArguments const& a, CLI::App const& verb, Context& context) {
     Output const output = FindOutput(a.output);
     RequirePngEnding("--picture", a.picture);
+    CheckStencils(a);
     KeepFilesApart(a, output, context);
     auto const model = context.Load(a.mesh);
     RequireLevels(a, output, model, verb);
@@ -186,6 +202,11 @@ int Run(FieldArguments const& a, CLI::App const& verb, Context& context) {
         engine::WritePng(
             files.Open(a.picture),
             engine::DrawArrows(field.mesh, field.vectors, {{a.view[0], a.view[1], a.view[2]}}));
+    }
+    if (!a.stencils.empty()) {
+        context.GetJob().Start("writing " + a.stencils[0]);
+        engine::AddFormMatrices(*field.refined, options.levels, a.stencils[0], a.stencils[1],
+                                files);
     }
     files.Commit();
     context.Warn(warnings);
@@ -226,6 +247,12 @@ Verb AddField(CLI::App& app) {
                   "tangent (default): the field runs along boundaries; normal: into them");
     verb->add_flag("--balance", a->options.isBalanced,
                    "spread what strengths do not add up to evenly over their component");
+    verb->add_option(kWriteStencils, a->stencils,
+                     "S1.mtx,S2.mtx: also write the subdivision of 1-forms and 2-forms down to "
+                     "--levels as Matrix Market files; S1.edges0.csv and S1.edgesK.csv number the "
+                     "edges")
+        ->delimiter(',')
+        ->expected(2);
     auto* const picture = verb->add_option("--picture", a->picture,
                                            "also write a PNG: arrows along the field, on the mesh");
     AddNumberOption(*verb, "--view", a->view,

@@ -6,22 +6,26 @@
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
 #include "engine/cli/option_rules.h"
+#include "engine/cli/options/far_limit_option.h"
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/fit/fit.h"
+#include "engine/io/matrix_market.h"
 #include "engine/io/mesh_writer.h"
 #include "engine/scene/refine.h"
 #include "far_ext/error.h"
+#include "far_ext/limit/limit_matrix.h"
 
 namespace limn::cli {
 
 namespace {
 
 struct FitArguments {
-    std::string mesh, output;
+    std::string mesh, output, matrix;
     engine::FitOptions options;
     int level = 0;
     bool keepsResult = false;
+    FarLimitArguments far;
 };
 
 nlohmann::json ToJson(std::vector<eval::SingularReport> const& components) {
@@ -47,6 +51,7 @@ void AddToReport(nlohmann::json& report, engine::FitResult const& result) {
     report["certificate"] = {{"max", result.certificate.max},
                              {"rms", result.certificate.rms},
                              {"worst_vertex", result.certificate.worstVertex}};
+    if (result.far) report["far"] = DescribeFarLimit(*result.far);
     report["solve_seconds"] = result.solveSeconds;
     for (size_t i = 0; i < result.primvars.size(); ++i) {
         auto const& primvar = result.primvars[i];
@@ -116,9 +121,28 @@ std::string Explain(std::string const& path, engine::FitResult const& result, do
         tolerance, result.lambdaMin);
 }
 
+/// The mesh and, where wanted, A.
+void Write(FitArguments const& a, engine::Model const& model, engine::FitResult const& result,
+           Context& context) {
+    context.GetJob().Start("writing " + a.output);
+    engine::MeshSequence files;
+    auto const warnings = files.Add(a.output, result.mesh, result.precision);
+    context.GetReport()["precision_written"] = kPrecisionWords.GetWord(result.precision);
+    if (!a.matrix.empty()) {
+        auto const A =
+            far_ext::LimitMatrix::Build(model.GetRefiner(), 0, {.alpha = a.options.alpha});
+        engine::WriteMatrixMarket(files.Open(a.matrix), A.AsMatrix(),
+                                  {"limit points of vertices", "vertices"});
+    }
+    files.Commit();
+    context.Warn(warnings);
+}
+
 int Run(FitArguments const& a, CLI::App const& verb, Context& context) {
     engine::FitOptions options = a.options;
     options.target = context.MakeTarget(a.output);
+    options.farLimit = a.far.GetRule();
+    RefuseWithoutFarLimit(verb, a.far);
     engine::RequireMeshEnding(a.output);
     if (options.method == eval::SolveMethod::Direct)
         RefuseEach(verb, {"--max-iterations"}, "has no effect with --method direct");
@@ -126,7 +150,8 @@ int Run(FitArguments const& a, CLI::App const& verb, Context& context) {
         throw Error(ErrorCode::BadOption,
                     "--keep-topology: without --alpha the topology is kept anyway");
     }
-    context.KeepApart({{"MESH", a.mesh}}, {{"-o", a.output}});
+    if (!a.matrix.empty()) RequireMatrixEnding("--write-matrix", a.matrix);
+    context.KeepApart({{"MESH", a.mesh}}, {{"-o", a.output}, {"--write-matrix", a.matrix}});
     auto model = context.Load(a.mesh);
     if (a.level > 0) {
         model = engine::Model::Build(
@@ -145,7 +170,7 @@ int Run(FitArguments const& a, CLI::App const& verb, Context& context) {
                         "program does",
                         a.output, options.alpha));
     }
-    context.WriteMesh(a.output, result.mesh, result.precision);
+    Write(a, model, result, context);
     return result.HasConverged() ? kDone
                                  : context.MissTarget(Explain(a.mesh, result, options.tolerance));
 }
@@ -177,6 +202,9 @@ Verb AddFit(CLI::App& app) {
                     {0, 10});
     verb->add_flag("--keep-result", a->keepsResult,
                    "write the result even where it misses the tolerance (exit status 4)");
+    verb->add_option("--write-matrix", a->matrix,
+                     "also write A, which the fit solves with, as a Matrix Market file (.mtx)");
+    AddFarLimitOptions(*verb, a->far, "for the certificate");
     verb->footer("Example:\n  limn fit scenes/spot/spot.obj -o out/spot.fit.obj --report -");
     return {verb, [a, verb](Context& context) { return Run(*a, *verb, context); }};
 }

@@ -16,6 +16,7 @@ constexpr OptionName kOptionNames[] = {
     {"creases", "--creases"},
     {"curve", "--curve"},
     {"dirMagLevels", "--dirmag"},
+    {"farLevel", "--far-level"},
     {"field", "--field"},
     {"frames", "--frames"},
     {"frequency", "--noise-frequency"},

@@ -41,4 +41,11 @@ void RequirePngEnding(std::string const& flag, std::string const& path) {
                 fmt::format("{} '{}': a picture is written as .png", flag, path));
 }
 
+void RequireMatrixEnding(std::string const& flag, std::string const& path) {
+    std::string const ending = engine::GetEnding(path);
+    if (ending.empty() || ending == ".mtx") return;
+    throw Error(ErrorCode::BadOption,
+                fmt::format("{} '{}': a matrix is written as .mtx", flag, path));
+}
+
 }  // namespace limn::cli

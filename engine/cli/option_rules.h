@@ -24,4 +24,7 @@ void RequirePrefix(std::string const& flag, std::string const& prefix);
 /// a pipe.
 void RequirePngEnding(std::string const& flag, std::string const& path);
 
+/// Refuses a matrix's name that promises another format. As above.
+void RequireMatrixEnding(std::string const& flag, std::string const& path);
+
 }  // namespace limn::cli

@@ -12,6 +12,12 @@
 
 namespace limn::engine {
 
+LimitValues LimitValues::MakeEmpty(size_t numPlaces) {
+    std::vector<double> const one(numPlaces, std::numeric_limits<double>::quiet_NaN()),
+        three(3 * numPlaces, std::numeric_limits<double>::quiet_NaN());
+    return {three, three, one, one, one, one, three, std::vector<char>(numPlaces, 0)};
+}
+
 size_t LimitValues::CountWithoutLimit() const {
     return static_cast<size_t>(std::count(hasLimit.begin(), hasLimit.end(), 0));
 }
@@ -40,12 +46,22 @@ LimitValues EvaluateLimit(Model const& model, PlaceArrays const& places, Orienta
     return MakeLimitValues(surface, places.faces, samples);
 }
 
+LimitValues EvaluateLimit(Model const& model, PlaceArrays const& places, Orientation orientation,
+                          eval::TableEvaluator& evaluator, Job& job) {
+    RequireLimit(model);
+    job.Start("building the table of places");
+    eval::LimitSurface const surface(model.GetRefiner());
+    eval::PlaceStencils const stencils(surface, LocatePlaces(model, places));
+    auto const table = evaluator.Make(kPlacesTable, stencils.MakeRows());
+    job.CheckStopped();
+    return MakeLimitValues(surface, places.faces,
+                           stencils.Evaluate(model.GetPositions(), orientation, table));
+}
+
 LimitValues MakeLimitValues(eval::LimitSurface const& surface, std::span<Index const> faces,
                             std::vector<eval::SurfaceSample> const& samples) {
     size_t const count = samples.size();
-    std::vector<double> const one(count, std::numeric_limits<double>::quiet_NaN()),
-        three(3 * count, std::numeric_limits<double>::quiet_NaN());
-    LimitValues values{three, three, one, one, one, one, three, std::vector<char>(count, 0)};
+    LimitValues values = LimitValues::MakeEmpty(count);
     auto const put = [](Eigen::Vector3d const& v, double* to) { std::copy_n(v.data(), 3, to); };
     for (size_t i = 0; i < count; ++i) {
         if (!surface.HasLimit(faces[i])) continue;

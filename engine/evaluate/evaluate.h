@@ -6,6 +6,7 @@
 #include "engine/evaluate/places.h"
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
+#include "eval/stencils/table_evaluator.h"
 #include "eval/surface/surface_sample.h"
 
 namespace limn::engine {
@@ -18,6 +19,9 @@ struct LimitValues {
     std::vector<double> directions;              ///< of k1; lines, their signs are free
     std::vector<char> hasLimit;
 
+    /// Of so many places, none of which has a limit yet.
+    static LimitValues MakeEmpty(size_t numPlaces);
+
     size_t CountWithoutLimit() const;
 };
 
@@ -27,6 +31,16 @@ struct LimitValues {
 /// \throws Stopped
 LimitValues EvaluateLimit(Model const& model, PlaceArrays const& places, Orientation orientation,
                           Job& job);
+
+/// The name of the table of places among those that an evaluator counts.
+inline constexpr char const* kPlacesTable = "places";
+
+/// The same by a table in float. Places next to irregular corners are evaluated in double all the
+/// same (eval::PlaceStencils).
+///
+/// \throws Error  BadMesh: a position that float cannot hold
+LimitValues EvaluateLimit(Model const& model, PlaceArrays const& places, Orientation orientation,
+                          eval::TableEvaluator& evaluator, Job& job);
 
 /// Samples of places as arrays. \param faces  of the places
 LimitValues MakeLimitValues(eval::LimitSurface const& surface, std::span<Index const> faces,

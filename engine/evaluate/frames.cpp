@@ -179,11 +179,12 @@ FramesReport EvaluateFrames(Model const& model, PlaceArrays const& places,
     job.Start("building the table of places");
     eval::LimitSurface const surface(model.GetRefiner());
     eval::PlaceStencils const stencils(surface, LocatePlaces(model, places));
-    std::optional<eval::StencilEvaluator> evaluator;
-    if (options.evaluator) evaluator.emplace(*options.evaluator, stencils.MakeRows());
+    std::optional<eval::FixedTable> table;
+    if (options.evaluator)
+        table.emplace(options.evaluator->Make(kPlacesTable, stencils.MakeRows()));
     auto const evaluate = [&](Scene const& frame) {
-        return evaluator ? stencils.Evaluate(frame.positions, options.orientation, *evaluator)
-                         : stencils.Evaluate(frame.positions, options.orientation);
+        return table ? stencils.Evaluate(frame.positions, options.orientation, *table)
+                     : stencils.Evaluate(frame.positions, options.orientation);
     };
 
     // Reading, evaluating, formatting and writing of one frame follow each other in one filter:

@@ -8,7 +8,7 @@
 #include "engine/evaluate/places.h"
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
-#include "eval/stencils/stencil_evaluator.h"
+#include "eval/stencils/table_evaluator.h"
 
 namespace limn::engine {
 
@@ -31,8 +31,8 @@ struct FrameOptions {
     Orientation orientation = Orientation::Right;
     /// Of the tables (FormatValues); none: FindTablePrecision's for each frame.
     std::optional<Precision> precision{};
-    /// What applies the table, in float; none: in double.
-    std::optional<eval::EvaluatorKind> evaluator{};
+    /// What applies the table, in float; null: in double.
+    eval::TableEvaluator* evaluator = nullptr;
 };
 
 struct FramesReport {

@@ -75,16 +75,8 @@ int ChooseDepth(Scene const& mesh, double size, double tolerance) {
                       eval::FaceTree::kLimitDepth);
 }
 
-/// \param mesh  whose vertex i, for those of `data`, must have its limit at the data
-/// \param refiner  the mesh's
-Certificate Certify(Scene const& mesh, Far::TopologyRefiner const& refiner,
-                    std::span<double const> data, double tolerance, Job& job) {
-    job.Start("certifying");
-    eval::LimitSurface const surface(refiner);
-    double const size = eval::FindSize(data, 3);
-    auto const limits =
-        eval::EvaluateVertexLimits(surface, mesh.positions, 3, ChooseDepth(mesh, size, tolerance),
-                                   [&] { job.CheckStopped(); });
+Certificate Judge(eval::VertexLimits const& limits, std::span<double const> data, double size,
+                  double tolerance) {
     Certificate certificate;
     double sum = 0.0;
     far_ext::Points const reached(limits.values), wanted(data);
@@ -103,6 +95,42 @@ Certificate Certify(Scene const& mesh, Far::TopologyRefiner const& refiner,
     return certificate;
 }
 
+/// The limit's points as OpenSubdiv has them.
+eval::VertexLimits FindFarLimits(FarReport const& report, std::span<Index const> vertices,
+                                 std::vector<double> const& positions) {
+    eval::VertexLimits limits{positions, std::vector<char>(positions.size() / 3, 0)};
+    auto const& values = report.far.values;
+    for (size_t i = 0; i < vertices.size(); ++i) {
+        if (!values.hasLimit[i]) continue;
+        limits.hasLimit[vertices[i]] = 1;
+        std::copy_n(&values.positions[3 * i], 3, &limits.values[3 * vertices[i]]);
+    }
+    return limits;
+}
+
+/// \param mesh     whose vertex i, for those of `data`, must have its limit at the data
+/// \param refiner  the mesh's
+Certificate Certify(Scene const& mesh, Far::TopologyRefiner const& refiner,
+                    std::span<double const> data, FitOptions const& options, Job& job,
+                    FitResult& result) {
+    job.Start("certifying");
+    double const size = eval::FindSize(data, 3);
+    if (options.farLimit) {
+        PlaceList places;
+        Model const model = Model::Build(mesh);
+        auto const vertices = AddVertexPlaces(model, places);
+        result.far =
+            CompareFarLimit(model, std::move(places), *options.farLimit, Orientation::Right, job);
+        return Judge(FindFarLimits(*result.far, vertices, mesh.positions), data, size,
+                     options.tolerance);
+    }
+    eval::LimitSurface const surface(refiner);
+    return Judge(eval::EvaluateVertexLimits(surface, mesh.positions, 3,
+                                            ChooseDepth(mesh, size, options.tolerance),
+                                            [&] { job.CheckStopped(); }),
+                 data, size, options.tolerance);
+}
+
 /// Turns the result's control mesh, in double, into what the file will hold, and certifies that.
 void RoundAndCertify(Precision precision, Model const& model, FitOptions const& options, Job& job,
                      FitResult& result) {
@@ -111,7 +139,7 @@ void RoundAndCertify(Precision precision, Model const& model, FitOptions const& 
         if (options.target) RoundAsWritten(options.target->path, precision, result.mesh.positions);
     };
     auto const certify = [&](Scene const& mesh, Far::TopologyRefiner const& refiner) {
-        return Certify(mesh, refiner, model.GetPositions(), options.tolerance, job);
+        return Certify(mesh, refiner, model.GetPositions(), options, job, result);
     };
     if (options.alpha == 0.0) {
         round();

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/evaluate/far_limit.h"
 #include "engine/io/written_numbers.h"
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
@@ -20,6 +21,9 @@ struct FitOptions {
     /// The file that the mesh is for: its coordinates are rounded to what that will hold. None:
     /// they stay doubles.
     std::optional<MeshTarget> target{};
+    /// Certifies by OpenSubdiv's limit stencils in place of the limit, and says how far they are
+    /// from it.
+    std::optional<FarLimitRule> farLimit{};
 };
 
 /// How far the limit surface of the result, rounded as it is, passes from the vertices that were
@@ -38,6 +42,7 @@ struct FitResult {
     eval::SolveReport report;                 ///< of the positions, before
     std::vector<eval::SolveReport> primvars;  ///< of the model's primvars, in their order
     Certificate certificate;
+    std::optional<FarReport> far{};  ///< with FitOptions::farLimit, at the vertices
     double lambdaMin = 0.0;  ///< smallest eigenvalue of A, estimated; 0 if a component is singular
     double solveSeconds = 0.0;
 

@@ -112,29 +112,17 @@ std::vector<SurfaceSample> PlaceStencils::Evaluate(std::span<double const> posit
 
 std::vector<SurfaceSample> PlaceStencils::Evaluate(std::span<double const> positions,
                                                    Orientation orientation,
-                                                   StencilEvaluator const& evaluator) const {
+                                                   FixedTable const& table) const {
     far_ext::CheckPoints(positions, GetNumVertices());
     Eigen::Vector3d const centre = GetBounds(positions).center();
-    std::vector<float> source(positions.size());
-    for (size_t i = 0; i < source.size(); ++i) {
-        source[i] = static_cast<float>(positions[i] - centre[static_cast<Eigen::Index>(i % 3)]);
-        if (!std::isfinite(source[i]))
-            throw Error(ErrorCode::BadMesh, "a position is too large for an evaluator in float");
-    }
-    Osd::BufferDescriptor const desc(0, 3, 3);
     size_t const size = GetNumRows() * 3;
-    std::vector<float> results(size * far_ext::kMaxWeightSets);
-    SimdEvaluator::Targets targets;
-    for (int set = 0; set < far_ext::kMaxWeightSets; ++set)
-        targets.push_back({results.data() + set * size, desc});
-    evaluator.EvalStencils(source.data(), desc, targets, 0, static_cast<Index>(GetNumRows()));
+    std::vector<double> results(size * far_ext::kMaxWeightSets);
+    table.Apply(positions, 3, results, centre.data());
     return EvaluateWith(positions, orientation, 1e-4, [&](size_t row) {
         SurfaceDerivatives d;
         Eigen::Vector3d* const sums[] = {&d.position, &d.ds, &d.dt, &d.dss, &d.dst, &d.dtt};
-        for (int set = 0; set < far_ext::kMaxWeightSets; ++set) {
-            for (int c = 0; c < 3; ++c) (*sums[set])[c] = results[set * size + row * 3 + c];
-        }
-        d.position += centre;
+        for (int set = 0; set < far_ext::kMaxWeightSets; ++set)
+            *sums[set] = Eigen::Map<Eigen::Vector3d const>(&results[set * size + row * 3]);
         return d;
     });
 }

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "eval/stencils/stencil_evaluator.h"
+#include "eval/stencils/table_evaluator.h"
 #include "eval/surface/surface_sample.h"
 #include "far_ext/rows/points.h"
 
@@ -45,10 +45,10 @@ public:
 
     /// The same with the rows applied in float. Positions are taken relative to their centre first.
     ///
-    /// \param evaluator  over MakeRows()
-    /// \throws Error     BadMesh: a position that float cannot hold; BadOption: as above
+    /// \param table   made of MakeRows()
+    /// \throws Error  BadMesh: a position that float cannot hold; BadOption: as above
     std::vector<SurfaceSample> Evaluate(std::span<double const> positions, Orientation orientation,
-                                        StencilEvaluator const& evaluator) const;
+                                        FixedTable const& table) const;
 
     /// The rows in float.
     far_ext::StencilRows MakeRows() const;

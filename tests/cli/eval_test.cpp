@@ -230,5 +230,59 @@ TEST_F(Eval, FramesThatCannotBeAreRefused) {
     EXPECT_EQ(folder.List(), (Words{"a.1.obj", "a.2.obj", "p.csv"}));
 }
 
+TEST_F(Eval, AnEvaluatorIsNearTheDoublesAndCountsItsTable) {
+    std::string const rows = "0,0.5,0.5\n3,0.25,0.75\n5,0.1,0.2\n";
+    auto const expected = Lines(At(Shape("catmark_bishop"), rows).out);
+    for (char const* kind : {"simd", "osd-cpu", "osd-omp"}) {
+        Outcome const outcome =
+            At(Shape("catmark_bishop"), rows, {"--evaluator", kind, "--report", folder / "r.json"});
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        auto const lines = Lines(outcome.out);
+        ASSERT_EQ(lines.size(), expected.size());
+        for (size_t row = 1; row < lines.size(); ++row) {
+            for (int column = 3; column < 9; ++column) {
+                EXPECT_NEAR(std::stod(Fields(lines[row])[column]),
+                            std::stod(Fields(expected[row])[column]), 2e-5);
+            }
+        }
+        json const report = Report()["evaluator"];
+        EXPECT_EQ(report["name"], kind);
+        ASSERT_EQ(report["tables"].size(), 1u);
+        EXPECT_EQ(report["tables"][0]["what"], "places");
+        EXPECT_EQ(report["tables"][0]["rows"], 3);
+        EXPECT_EQ(report["tables"][0]["applications"], 1);
+    }
+}
+
+TEST_F(Eval, OpenSubdivsLimitIsWrittenAndComparedWithTheExactOne) {
+    std::string const rows = "0,0.5,0.5\n0,0,0\n";
+    Outcome const far = At(Shape("catmark_cube"), rows,
+                           {"--limit-stencils", "far", "--far-level", "3", "--far-end-cap",
+                            "bspline", "--evaluator", "simd", "--report", folder / "r.json"});
+    ASSERT_EQ(far.status, 0) << far.err;
+    json const report = Report()["far"];
+    EXPECT_EQ(report["level"], 3);
+    EXPECT_EQ(report["end_cap"], "bspline");
+    EXPECT_EQ(report["inf_sharp"], false);
+    EXPECT_EQ(report["places"], 2);
+    EXPECT_GT(report["table_bytes"], 0);
+    EXPECT_LT(report["position"]["max"], 1e-3);
+    for (char const* key : {"face", "s", "t"})
+        EXPECT_TRUE(report["mean_curvature"].contains(key)) << key;
+    Outcome const exact = At(Shape("catmark_cube"), rows);
+    double const farX = std::stod(Fields(Lines(far.out).at(1)).at(3));
+    double const x = std::stod(Fields(Lines(exact.out).at(1)).at(3));
+    EXPECT_NEAR(farX, x, 2e-3);
+    EXPECT_NE(far.out, exact.out);
+}
+
+TEST_F(Eval, FlagsOfOpenSubdivsLimitNeedIt) {
+    ExpectError(At(Shape("catmark_cube"), "0,0,0\n", {"--far-level", "3"}), 2,
+                "--far-level needs --limit-stencils far");
+    ExpectError(At(Shape("catmark_cube"), "0,0,0\n",
+                   {"--limit-stencils", "far", "--frames", "x.{frame}.obj", "-o", "y.{frame}.csv"}),
+                2, "--limit-stencils and --frames");
+}
+
 }  // namespace
 }  // namespace limn

@@ -243,5 +243,22 @@ TEST_F(CliFit, NonManifoldMeshesAndValence2AreFittedWithWarnings) {
     }
 }
 
+TEST_F(Cli, FitIsCertifiedByOpenSubdivsLimitWhereThatIsWanted) {
+    Words const words{"fit",      test::ScenePath("spot/spot.obj"),
+                      "-o",       folder / "a.obj",
+                      "--report", folder / "r.json"};
+    ASSERT_EQ(Limn(words).status, 0);
+    json const exact = Report();
+    EXPECT_FALSE(exact.contains("far"));
+    std::string const mesh = test::ReadText(folder / "a.obj");
+    ASSERT_EQ(Limn(words + Words{"--limit-stencils", "far"}).status, 0);
+    json const far = Report();
+    EXPECT_EQ(test::ReadText(folder / "a.obj"), mesh);
+    EXPECT_EQ(far["far"]["places"], far["inputs"][0]["vertices"]);
+    EXPECT_NEAR(far["certificate"]["max"].get<double>(), exact["certificate"]["max"].get<double>(),
+                2e-7);
+    EXPECT_NE(far["certificate"]["max"], exact["certificate"]["max"]);
+}
+
 }  // namespace
 }  // namespace limn

@@ -45,4 +45,35 @@ engine::Origin ParseOrigin(std::string const& text) {
     return point;
 }
 
+std::vector<int> ParseTiles(std::vector<std::string> const& texts) {
+    std::vector<int> tiles;
+    for (std::string const& text : texts) {
+        size_t const dash = text.find('-');
+        auto const parse = [](std::string_view part, int low) {
+            return ParseNumber<int>("--tiles", part, {low, 9999});
+        };
+        int const first = parse(std::string_view(text).substr(0, dash), 1001);
+        int const last = dash == std::string::npos
+                             ? first
+                             : parse(std::string_view(text).substr(dash + 1), first);
+        for (int tile = first; tile <= last; ++tile) tiles.push_back(tile);
+    }
+    return tiles;
+}
+
+std::vector<std::string> ParseHalfMaps(std::string const& text,
+                                       std::vector<std::string> const& maps) {
+    std::vector<std::string> listed;
+    if (text == kAllMaps) return listed;
+    std::istringstream words(text);
+    for (std::string map; std::getline(words, map, ',');) {
+        if (std::ranges::find(maps, map) == maps.end()) {
+            throw Error(ErrorCode::BadOption,
+                        fmt::format("--half={}: '{}' is no map that is baked", text, map));
+        }
+        listed.push_back(map);
+    }
+    return listed;
+}
+
 }  // namespace limn::cli

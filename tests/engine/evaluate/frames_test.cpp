@@ -59,7 +59,9 @@ protected:
         FrameOptions options;
         options.outputPattern = folder / output;
         options.precision = Precision::Double;
-        options.evaluator = evaluator;
+        std::optional<eval::TableEvaluator> door;
+        if (evaluator) door.emplace(*evaluator);
+        options.evaluator = door ? &*door : nullptr;
         Job job;
         return EvaluateFrames(Model::Build(mesh), GetPlaces(),
                               FindFrames(folder / "in/walk.{frame}.obj"), options, job);

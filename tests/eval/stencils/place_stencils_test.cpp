@@ -99,7 +99,8 @@ TEST(PlaceStencils, FarFromTheOriginNoDigitsAreLostBesideThePositions) {
     double const k1 = stencils.Evaluate(scene.positions, Orientation::Right)[0].curvature.k1;
     for (double& x : scene.positions) x += 1024.0;
     EXPECT_NEAR(stencils.Evaluate(scene.positions, Orientation::Right)[0].curvature.k1, k1, 1e-10);
-    StencilEvaluator const evaluator(EvaluatorKind::Simd, stencils.MakeRows());
+    TableEvaluator door(EvaluatorKind::Simd);
+    auto const evaluator = door.Make("places", stencils.MakeRows());
     EXPECT_NEAR(stencils.Evaluate(scene.positions, Orientation::Right, evaluator)[0].curvature.k1,
                 k1, 1e-4);
 }
@@ -112,8 +113,9 @@ TEST(PlaceStencils, EvaluatorsInFloatAgree) {
     PlaceStencils const stencils(surface, places);
     auto const expected = stencils.Evaluate(scene.positions, Orientation::Right);
     for (auto kind : {EvaluatorKind::Simd, EvaluatorKind::OsdCpu}) {
+        TableEvaluator door(kind);
         auto const samples = stencils.Evaluate(scene.positions, Orientation::Right,
-                                               StencilEvaluator(kind, stencils.MakeRows()));
+                                               door.Make("places", stencils.MakeRows()));
         for (size_t i = 0; i < places.size(); ++i) {
             ASSERT_LT((samples[i].position - expected[i].position).norm(), 1e-6 * Scale(scene))
                 << GetName(kind) << i;
@@ -128,8 +130,9 @@ TEST(PlaceStencils, WhatFloatCannotHoldIsRefused) {
     LimitSurface const surface(*refiner);
     PlaceStencils const stencils(surface, {{0, 0, 0.5, 0.5}});
     scene.positions[3] = 1e300;
+    TableEvaluator door(EvaluatorKind::Simd);
     EXPECT_THROW(stencils.Evaluate(scene.positions, Orientation::Right,
-                                   StencilEvaluator(EvaluatorKind::Simd, stencils.MakeRows())),
+                                   door.Make("places", stencils.MakeRows())),
                  Error);
 }
 
@@ -154,7 +157,8 @@ TEST(PlaceStencils, PositionsThatAreTooShortAreRefused) {
     auto const refiner = far_ext::CreateRefiner(scene.cage);
     LimitSurface const surface(*refiner);
     PlaceStencils const stencils(surface, {{0, 0, 0.5, 0.5}});
-    StencilEvaluator const evaluator(EvaluatorKind::Simd, stencils.MakeRows());
+    TableEvaluator door(EvaluatorKind::Simd);
+    auto const evaluator = door.Make("places", stencils.MakeRows());
     std::vector<double> const six(6);
     std::string const message = "positions: 6 values are too few for 8 vertices of 3";
     EXPECT_EQ(test::RefusalOf([&] { stencils.Evaluate(six, Orientation::Right); }), message);

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/cli/options/evaluator_option.h"
+
+#include <fmt/format.h>
+
+#include "engine/cli/options/word_option.h"
+#include "far_ext/error.h"
+
+namespace limn::cli {
+
+void AddEvaluatorOption(CLI::App& verb, std::optional<eval::EvaluatorKind>& kind,
+                        std::string const& what) {
+    AddWordOption(
+        verb, "--evaluator", kind, eval::kEvaluatorWords,
+        fmt::format("apply {} in float: simd (limn's), osd-cpu or osd-omp (OpenSubdiv's); "
+                    "the report's `evaluator` counts them",
+                    what));
+}
+
+std::unique_ptr<eval::TableEvaluator> MakeEvaluator(std::optional<eval::EvaluatorKind> kind,
+                                                    CommonOptions const& common) {
+    if (!kind) return nullptr;
+    if (common.precision == Precision::Double) {
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("--evaluator {} works in float; --precision double excludes it",
+                                eval::GetName(*kind)));
+    }
+    return std::make_unique<eval::TableEvaluator>(*kind);
+}
+
+nlohmann::json DescribeEvaluator(eval::TableEvaluator const& evaluator) {
+    nlohmann::json tables = nlohmann::json::array();
+    for (eval::TableUse const& use : evaluator.GetUses()) {
+        tables.push_back({{"what", use.what},
+                          {"rows", use.rows},
+                          {"entries", use.entries},
+                          {"applications", use.applications},
+                          {"seconds", use.seconds}});
+    }
+    return {{"name", eval::GetName(evaluator.GetKind())}, {"tables", std::move(tables)}};
+}
+
+}  // namespace limn::cli

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "engine/cli/cli.h"
+#include "eval/stencils/table_evaluator.h"
+
+namespace limn::cli {
+
+/// Adds --evaluator. \param what  the tables that it applies, for the help
+void AddEvaluatorOption(CLI::App& verb, std::optional<eval::EvaluatorKind>& kind,
+                        std::string const& what);
+
+/// The evaluator of a run; none where none was asked for.
+///
+/// \throws Error  BadOption: with --precision double
+std::unique_ptr<eval::TableEvaluator> MakeEvaluator(std::optional<eval::EvaluatorKind> kind,
+                                                    CommonOptions const& common);
+
+/// The report's `evaluator`: what was applied, and how often.
+nlohmann::json DescribeEvaluator(eval::TableEvaluator const& evaluator);
+
+}  // namespace limn::cli
