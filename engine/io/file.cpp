@@ -33,6 +33,9 @@ std::string GetEnding(std::string const& path) {
 
 namespace {
 
+/// What is typed at a terminal is shorter.
+constexpr size_t kMostOfADevice = 1 << 26;
+
 Descriptor OpenToRead(std::string const& path) {
     Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
     if (!file.IsOpen()) ThrowIoError(path, "cannot be opened");
@@ -58,33 +61,25 @@ InputFile::InputFile(std::string const& path) {
         throw Error(ErrorCode::Io, fmt::format("'{}' cannot be read: it is a folder", path));
     }
     size_t capacity = static_cast<size_t>(status.st_size) + 1;
-    _data = static_cast<char*>(std::malloc(capacity));
+    _data.reset(static_cast<char*>(std::malloc(capacity)));
     while (_data) {
         if (_size == capacity) {
             capacity *= 2;
-            char* const larger = static_cast<char*>(std::realloc(_data, capacity));
-            if (!larger) {
-                std::free(_data);
-                _data = nullptr;
-                break;
-            }
-            _data = larger;
+            auto* const larger = static_cast<char*>(std::realloc(_data.get(), capacity));
+            if (!larger) break;
+            static_cast<void>(_data.release());
+            _data.reset(larger);
         }
-        ssize_t const count = ReadSome(file, _data + _size, capacity - _size);
-        if (count < 0) {
-            int const reason = errno;
-            std::free(_data);
-            errno = reason;
-            ThrowIoError(path, "cannot be read");
-        }
+        ssize_t const count = ReadSome(file, _data.get() + _size, capacity - _size);
+        if (count < 0) ThrowIoError(path, "cannot be read");
         if (count == 0) return;
         _size += static_cast<size_t>(count);
+        if (S_ISCHR(status.st_mode) && _size > kMostOfADevice) {
+            throw Error(ErrorCode::Io,
+                        fmt::format("'{}' cannot be read: it is a device without an end", path));
+        }
     }
     throw std::bad_alloc();
-}
-
-InputFile::~InputFile() {
-    std::free(_data);
 }
 
 void ReadBlocks(std::string const& path, std::function<void(std::string_view)> const& take) {

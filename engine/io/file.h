@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdlib>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -11,16 +13,16 @@ namespace limn::engine {
 /// bake would end the process, and pipes cannot be mapped.
 class InputFile {
 public:
-    /// \throws Error  Io, with the system's reason
+    /// \throws Error  Io, with the system's reason, or for a device that does not end
     explicit InputFile(std::string const& path);
-    ~InputFile();
-    InputFile(InputFile const&) = delete;
-    InputFile& operator=(InputFile const&) = delete;
 
-    std::string_view GetBytes() const { return {_data, _size}; }
+    std::string_view GetBytes() const { return {_data.get(), _size}; }
 
 private:
-    char* _data = nullptr;
+    struct Free {
+        void operator()(char* data) const { std::free(data); }
+    };
+    std::unique_ptr<char, Free> _data;
     size_t _size = 0;
 };
 

@@ -253,5 +253,9 @@ TEST_F(Cli, FolderAsInputIsStatus5) {
     ExpectError(Limn({"info", folder.GetPath()}), 5, "it is a folder");
 }
 
+TEST_F(Cli, ADeviceWithoutAnEndIsRefused) {
+    ExpectError(Limn({"info", "/dev/zero"}), 5, "'/dev/zero' cannot be read: it is a device");
+}
+
 }  // namespace
 }  // namespace limn
