@@ -42,7 +42,7 @@ void AddCommonOptions(CLI::App& app, CommonOptions& o) {
                         "right (default): faces are counter-clockwise from outside"));
     group(AddNumberOption(app, "--threads", o.numThreads,
                           "default: LIMN_THREADS, OPENIMAGEIO_THREADS, CUE_THREADS, else all cores",
-                          {1, 1024}));
+                          kThreadCounts));
     group(
         app.add_option("--report", o.reportPath, "write a JSON report of the run (- for stdout)"));
     group(AddWordOption(app, "--precision", o.precision, kPrecisionWords,

@@ -142,7 +142,12 @@ private:
 
     double ToNumber(std::string_view field, std::string const& column) const {
         auto const parsed = TextScanner::ParseNumber(field);
-        if (parsed.IsNumber() && parsed.length == field.size()) return parsed.value;
+        bool const isAll = parsed.length == field.size();
+        if (parsed.IsNumber() && isAll) return parsed.value;
+        if (parsed.IsUnheld() && isAll) {
+            _scan.Refuse(fmt::format("{} in column {} is {}", TextScanner::Quote(field), column,
+                                     DescribeUnheld(field)));
+        }
         bool const hasComma = field.find(',') != std::string_view::npos;
         _scan.Refuse(fmt::format("{} in column {} is no number{}", TextScanner::Quote(field),
                                  column, hasComma ? "; write a decimal point, not a comma" : ""));

@@ -75,6 +75,33 @@ TEST(Typing, EveryNumberOptionQuotesWhatIsNone) {
     });
 }
 
+TEST(Typing, OwnVariableOfThreadsIsRefusedWhereTheOptionWouldBe) {
+    auto const info = [](Words const& environment, Words const& more = {}) {
+        return Limn(Words{"info", Shape("catmark_cube"), "--json"} + more,
+                    {.environment = environment});
+    };
+    Outcome const plain = info({});
+    for (std::string const text : {"abc", "0", "-1", "1e3", "2 ", "1025", "99999999999"}) {
+        ExpectError(info({"LIMN_THREADS=" + text}), 2,
+                    "LIMN_THREADS: '" + text + "' is no whole number from 1 to 1024");
+        EXPECT_EQ(info({"LIMN_THREADS=" + text}, {"--threads", "2"}).out, plain.out);
+        EXPECT_EQ(info({"OPENIMAGEIO_THREADS=" + text, "CUE_THREADS=" + text}).out, plain.out);
+    }
+    EXPECT_EQ(info({"LIMN_THREADS="}).out, plain.out);
+}
+
+TEST(Typing, FirstVariableWithANumberOfThreadsCounts) {
+    test::TemporaryFolder const folder;
+    auto const threads = [&](Words const& environment) {
+        Words const words{"info", Shape("catmark_cube"), "--report", folder / "r.json"};
+        EXPECT_EQ(Limn(words, {.environment = environment}).status, 0);
+        return ReadJson(folder / "r.json")["effective_options"]["threads"].get<int>();
+    };
+    EXPECT_EQ(threads({"LIMN_THREADS=2", "OPENIMAGEIO_THREADS=3", "CUE_THREADS=4"}), 2);
+    EXPECT_EQ(threads({"LIMN_THREADS=", "OPENIMAGEIO_THREADS=3", "CUE_THREADS=4"}), 3);
+    EXPECT_EQ(threads({"LIMN_THREADS=", "OPENIMAGEIO_THREADS=0", "CUE_THREADS=4"}), 4);
+}
+
 TEST(Typing, TextsWithNumbersQuoteTheirPartThatIsNone) {
     auto const expect = [](Words const& words, std::string const& says) {
         ExpectError(Limn(words), 2, says);
@@ -83,6 +110,8 @@ TEST(Typing, TextsWithNumbersQuoteTheirPartThatIsNone) {
     Words const bake{"bake", mesh, "-o", "a.exr", "--maps", "mean"};
     expect(bake + Words{"--size", "abc"}, "--size: 'abc' is no number of texels from 1 to 65536");
     expect(bake + Words{"--tiles", "1001,x"}, "--tiles: 'x' is no whole number from 1001 to 9999");
+    expect(bake + Words{"--preview", "--preview-range", "0,1e400"},
+           "--preview-range: '1e400' is too large a number");
     expect(bake + Words{"--encode", "1,x"}, "--encode: 'x' is no number");
     expect(bake + Words{"--audit", "--seam-bound", "mean=x"}, "--seam-bound: 'x' is no number");
     Words const field{"field", mesh, "-o", "a.obj"};

@@ -68,7 +68,12 @@ TEST_F(Tables, RefuseWhatIsNoNumberByLineAndColumn) {
     EXPECT_EQ(RefusalOfText("face,s,t\n0,half,0\n"), ":2: 'half' in column s is no number");
     EXPECT_EQ(RefusalOfText("face,s,t\n0,0\n"), ":2: '' in column t is no number");
     EXPECT_EQ(RefusalOfText("face,s,t\n0,nan,0\n"), ":2: 'nan' in column s is no number");
-    EXPECT_EQ(RefusalOfText("face,s,t\n0,1e999,0\n"), ":2: '1e999' in column s is no number");
+    EXPECT_EQ(RefusalOfText("face,s,t\n0,1e999,0\n"),
+              ":2: '1e999' in column s is too large a number; at most 1.79769e+308 in magnitude is "
+              "possible");
+    EXPECT_EQ(RefusalOfText("face,s,t\n0,0,1e-999\n"),
+              ":2: '1e-999' in column t is too small a number; 0, or at least 4.94066e-324 in "
+              "magnitude, is possible");
 }
 
 TEST_F(Tables, RefuseDecimalCommas) {
