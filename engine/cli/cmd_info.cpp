@@ -95,7 +95,7 @@ std::string ToText(engine::Model const& model, engine::MeshInfo const& info) {
     } else {
         line("UVs",
              fmt::format(
-                 "tiles {}; faces: {} overlapping, {} flipped, {} without area, {} out of range, "
+                 "tiles {}; faces: {} over others, {} flipped, {} without area, {} out of range, "
                  "{} without UVs",
                  ListTiles(info.uv.tiles), info.uv.overlapFaces, info.uv.flippedFaces,
                  info.uv.zeroAreaFaces, info.uv.outOfRangeFaces, info.uv.bareFaces));
