@@ -16,6 +16,9 @@ struct UVInfo {
     size_t bareFaces = 0;  ///< without texture coordinates, beside others that have some
 };
 
+/// Per face: whether it has texture coordinates, and its polygon there has no area.
+std::vector<char> FindFlatFaces(Model const& model);
+
 /// Looks at the polygons that faces are in texture space, and for tiles and range at their limit.
 /// Those that lie over others are found on a grid of 512 x 512 samples per tile; a bake counts
 /// texels instead (BakeReport::overlaps).
