@@ -198,6 +198,7 @@ TEST_F(Cli, BakeReportHasItsKeys) {
 
 /// All keys of a JSON value's objects, but those of the options.
 void ListKeys(json const& value, std::set<std::string>& keys) {
+    if (!value.is_structured()) return;  // a scalar's only item is itself
     for (auto const& [key, member] : value.items()) {
         if (value.is_object()) keys.insert(key);
         if (key != "effective_options") ListKeys(member, keys);
