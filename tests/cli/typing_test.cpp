@@ -102,6 +102,55 @@ TEST(Typing, FirstVariableWithANumberOfThreadsCounts) {
     EXPECT_EQ(threads({"LIMN_THREADS=", "OPENIMAGEIO_THREADS=0", "CUE_THREADS=4"}), 4);
 }
 
+/// Calls `check(verb, option)` for every option that takes a value.
+template <class Check>
+void ForEachOptionWithAValue(Check check) {
+    cli::Parser const parser;
+    size_t count = 0;
+    for (CLI::App const* verb : cli::ListVerbs(parser.GetApp())) {
+        for (OptionEntry const& option : cli::ListOptions(*verb)) {
+            if (option.value == OptionEntry::Value::None || option.IsPositional()) continue;
+            check(verb->get_name(), option);
+            ++count;
+        }
+    }
+    EXPECT_GT(count, 150u);
+}
+
+TEST(Typing, AnOptionWithoutItsValueIsToldWithAnExampleThatItTakes) {
+    ForEachOptionWithAValue([](std::string const& verb, OptionEntry const& option) {
+        std::string const& flag = option.longFlag;
+        std::string const refusal = Refusal({verb, "a.obj", flag});
+        std::string const start = flag + " needs a value, such as " + flag + " ";
+        ASSERT_TRUE(refusal.starts_with(start)) << verb << ": " << refusal;
+        size_t const end = std::min(refusal.find(" (limn"), refusal.find("; files stand"));
+        std::string example = refusal.substr(start.size(), end - start.size());
+        EXPECT_FALSE(example.empty()) << refusal;
+        std::erase(example, '\'');
+        std::string const next = Refusal({verb, "a.obj", flag, example});
+        EXPECT_FALSE(next.starts_with(flag)) << verb << ": " << next;
+    });
+}
+
+TEST(Typing, WhatTheParserFindsIsToldInOurWords) {
+    auto const expect = [](Words const& words, std::string const& says) {
+        EXPECT_TRUE(Refusal(words).starts_with(says)) << Refusal(words);
+    };
+    expect({"info"}, "MESH is required, such as spot.obj (limn info --help");
+    expect({"morph", "a.obj"}, "TO is required, such as smile.obj (");
+    expect({"completion"}, "SHELL is required, such as bash (");
+    expect({"morph", "a.obj", "b.obj"}, "--output is required, such as --output out/spot (");
+    expect({"bake", "a.obj", "--view", "1,2"},
+           "--view takes 3 values and has 2, such as --view 1,0.6,0.8 (");
+    expect({"bake", "a.obj", "--view", "1,2,3,4"}, "--view takes 3 values and has 4");
+    expect({"info", "a.obj", "--threads", "1", "--threads", "2"},
+           "--threads takes one value and has 2 (");
+    expect({"info", "a.obj", "--quiet", "--verbose"}, "--quiet and --verbose exclude each other (");
+    expect({"smooth", "a.obj", "-o", "b.obj", "--view", "1,2,3"},
+           "--view needs --picture, such as --picture out/spot.png (");
+    expect({"info", "a.obj", "--json=maybe"}, "--json takes no value (");
+}
+
 TEST(Typing, TextsWithNumbersQuoteTheirPartThatIsNone) {
     auto const expect = [](Words const& words, std::string const& says) {
         ExpectError(Limn(words), 2, says);

@@ -58,7 +58,7 @@ std::string_view GetKind() {
 
 /// What is wrong with a text that is no number of the range.
 template <class Number>
-std::string DescribeFault(std::string_view text, NumberRange<Number> const& range) {
+std::string DescribeNumberFault(std::string_view text, NumberRange<Number> const& range) {
     if (Read<Number>(text).code == std::errc::result_out_of_range) {
         // The range says what is wrong where it ends before the type does.
         NumberRange<Number> const any;
@@ -106,7 +106,7 @@ Number ParseNumber(std::string_view option, std::string_view text,
                    NumberRange<Number> const& range) {
     if (auto const value = FindNumber(text, range)) return *value;
     throw Error(ErrorCode::BadOption,
-                fmt::format("{}: '{}' is {}", option, text, DescribeFault(text, range)));
+                fmt::format("{}: '{}' is {}", option, text, DescribeNumberFault(text, range)));
 }
 
 template std::string MakePlaceholder(NumberRange<int> const&);
