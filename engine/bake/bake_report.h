@@ -31,9 +31,10 @@ struct OverlapReport {
 };
 
 struct BakeReport {
-    size_t texelsCovered = 0, overlaps = 0, newtonFailures = 0, movedSamples = 0,
-           degenerateSamples = 0, clamped = 0;
-    OverlapReport overlap;  ///< what the overlaps are
+    size_t texelsCovered = 0;
+    size_t overlaps = 0;  ///< texels under several faces
+    size_t newtonFailures = 0, movedSamples = 0, degenerateSamples = 0, clamped = 0;
+    OverlapReport overlap;  ///< what lies over those texels
     std::vector<int> tiles;
     std::vector<BakeOutput> outputs;
     std::vector<FileLayout> files;          ///< what outputs of each name hold

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -101,10 +102,16 @@ std::vector<int> FindBakedTiles(TexturedFaces const& faces, Model const& model,
         tiles = {only};
     }
     WarnOfFacesOutOfRange(faces, model, options, job);
-    std::erase_if(tiles, [&](int tile) {
-        return !asked.empty() && std::ranges::find(asked, tile) == asked.end();
+    std::vector<int> baked;
+    std::ranges::copy_if(tiles, std::back_inserter(baked), [&](int tile) {
+        return asked.empty() || std::ranges::find(asked, tile) != asked.end();
     });
-    return tiles;
+    if (baked.empty() && !tiles.empty() && !options.mayBeEmpty) {
+        throw Error(ErrorCode::BadMesh,
+                    fmt::format("{}: no texel is covered in the tiles asked for; there are: {}",
+                                model.GetPath(), ListTiles(tiles)));
+    }
+    return baked;
 }
 
 }  // namespace limn::engine

@@ -16,7 +16,8 @@ namespace limn::engine {
 /// \param hasTileToken  whether outputs are named by their tile. If not, one tile is baked, and it
 ///                      must be the only one there is, or the only one asked for
 /// \throws Error  BadOption: more tiles than anybody bakes unasked; faces in other tiles without a
-///                token to name these by
+///                token to name these by.  BadMesh: none of those asked for is there, and the bake
+///                may not be empty
 std::vector<int> FindBakedTiles(TexturedFaces const& faces, Model const& model,
                                 BakeOptions const& options, bool hasTileToken, Job& job);
 

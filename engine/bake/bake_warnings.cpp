@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "engine/scene/extent.h"
+#include "engine/scene/uv_info.h"
 
 namespace limn::engine {
 
@@ -90,22 +91,28 @@ void WarnOfLeftOutDisplacement(Model const& model, BakeReport const& report, Job
     }
 }
 
+/// Says of the faces that are marked what they are, with their number and the first.
+void WarnOfFaces(Model const& model, std::vector<char> const& isMarked, char const* what,
+                 Job& job) {
+    auto const first = std::ranges::find(isMarked, 1);
+    if (first == isMarked.end()) return;
+    job.Warn(fmt::format("{}: {} of {} faces {}, first {}", model.GetPath(),
+                         std::ranges::count(isMarked, 1), isMarked.size(), what,
+                         model.NameFace(static_cast<Index>(first - isMarked.begin()))));
+}
+
 }  // namespace
 
-void WarnOfBareFaces(Model const& model, Job& job) {
-    auto const& lacksUVs = model.GetFacesLackingUVs();
-    auto const first = std::ranges::find(lacksUVs, 1);
-    if (first == lacksUVs.end()) return;
-    job.Warn(
-        fmt::format("{}: {} of {} faces have no texture coordinates and are not baked, first "
-                    "{}",
-                    model.GetPath(), std::ranges::count(lacksUVs, 1), lacksUVs.size(),
-                    model.NameFace(static_cast<Index>(first - lacksUVs.begin()))));
+void WarnOfLostFaces(Model const& model, Job& job) {
+    WarnOfFaces(model, model.GetFacesLackingUVs(), "have no texture coordinates and are not baked",
+                job);
+    WarnOfFaces(model, FindFlatFaces(model),
+                "have no area in the texture, so that no texel shows what lies on them", job);
 }
 
 void WarnBeforeBake(Model const& model, BakeOptions const& options,
                     std::vector<FileLayout> const& files, Job& job) {
-    if (options.group.empty()) WarnOfBareFaces(model, job);
+    if (options.group.empty()) WarnOfLostFaces(model, job);
     for (FileLayout const& file : files) {
         for (MapTraits const& map : file.maps) {
             if (map.isPlace) WarnOfRoundedPlaces(model, options, map, job);

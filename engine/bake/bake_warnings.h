@@ -11,8 +11,9 @@
 
 namespace limn::engine {
 
-/// Warns of faces that have no texture coordinates beside others that have some.
-void WarnOfBareFaces(Model const& model, Job& job);
+/// Warns of faces that have no texture coordinates beside others that have some, and of those whose
+/// polygon in the texture has no area, as DescribeUVs counts them.
+void WarnOfLostFaces(Model const& model, Job& job);
 
 /// Warns of what is known before anything is baked: faces left out (unless the bake is one of
 /// several, SplitByGroup), values that their type cannot hold.

@@ -36,7 +36,7 @@ std::vector<std::string> ListGroupsOfOneKind(Model const& model, Job& job) {
 
 std::vector<BakeOptions> SplitByGroup(Model const& model, BakeOptions const& options, Job& job) {
     model.SelectGroups(options.groups);  // refuses those that there are not
-    WarnOfBareFaces(model, job);
+    WarnOfLostFaces(model, job);
     std::vector<BakeOptions> bakes;
     auto const groups = options.groups.empty() ? ListGroupsOfOneKind(model, job) : options.groups;
     for (std::string const& group : groups) {

@@ -21,28 +21,90 @@ namespace fs = std::filesystem;
 
 constexpr char const* kNullDevice = "/dev/null";
 
+bool IsWordCharacter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+
+/// How many of a text's first characters from `start` on can stand in a word.
+size_t MeasureWord(std::string_view text, size_t start) {
+    size_t end = start;
+    while (end < text.size() && IsWordCharacter(text[end])) ++end;
+    return end - start;
+}
+
+/// The length as far as the bracket that closes; 0 without one.
+size_t MeasureBrackets(std::string_view text, char close) {
+    return text.find(close) + 1;  // npos + 1 is 0
+}
+
+/// printf's and Python's "%04d", "%(UDIM)d", "%(name)s"; no token is "%d" of "50%done".
+size_t MeasureConversion(std::string_view text) {
+    bool const isNamed = text.starts_with("%(");
+    size_t const start = isNamed ? MeasureBrackets(text, ')') : 1;
+    size_t const letter = start == 0 ? text.npos : text.find_first_not_of("0123456789", start);
+    if (letter == text.npos || (text[letter] != 'd' && text[letter] != 's')) return 0;
+    return isNamed || MeasureWord(text, letter) == 1 ? letter + 1 : 0;
+}
+
+/// "[UDIM]", "[map]"; other words may stand in brackets, as in "spot [old].exr".
+size_t MeasureSquareBrackets(std::string_view text) {
+    size_t const length = MeasureBrackets(text, ']');
+    if (length == 0) return 0;
+    std::string word(text.substr(1, length - 2));
+    for (char& c : word) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+    constexpr std::string_view kWords[] = {"map",    "mesh", "group", "udim",
+                                           "uvtile", "tile", "frame"};
+    return std::ranges::find(kWords, word) == std::end(kWords) ? 0 : length;
+}
+
+/// "$UDIM", "$F4", "${map}": variables that nobody has put in.
+size_t MeasureVariable(std::string_view text) {
+    if (text.starts_with("${")) return MeasureBrackets(text, '}');
+    size_t const length = MeasureWord(text, 1);
+    bool const isName = length > 0 && !(text[1] >= '0' && text[1] <= '9');
+    return isName ? 1 + length : 0;
+}
+
+/// "####", "@@@": digits of a frame.
+size_t MeasureRun(std::string_view text) {
+    size_t const length = std::min(text.find_first_not_of(text[0]), text.size());
+    return length > 1 ? length : 0;
+}
+
+/// The length of the token with which a text begins, limn's or another program's; 0 without one.
+size_t MeasureToken(std::string_view text) {
+    switch (text[0]) {
+        case '{':
+            return MeasureBrackets(text, '}');
+        case '<':
+            return MeasureBrackets(text, '>');
+        case '[':
+            return MeasureSquareBrackets(text);
+        case '%':
+            return MeasureConversion(text);
+        case '$':
+            return MeasureVariable(text);
+        case '#':
+        case '@':
+            return MeasureRun(text);
+        default:
+            return 0;
+    }
+}
+
 /// Calls visit(text, isToken) for a pattern's parts, in order.
 template <class Visit>
 void ForEachPart(std::string_view pattern, Visit visit) {
-    struct Brackets {
-        std::string_view open, close;
-    };
-    constexpr Brackets kBrackets[] = {{"{", "}"}, {"<", ">"}, {"%(", ")d"}};
     size_t literal = 0;
     for (size_t at = 0; at < pattern.size();) {
-        auto const brackets = std::ranges::find_if(
-            kBrackets, [&](Brackets const& b) { return pattern.substr(at).starts_with(b.open); });
-        size_t const close = brackets == std::end(kBrackets)
-                                 ? std::string_view::npos
-                                 : pattern.find(brackets->close, at + brackets->open.size());
-        if (close == std::string_view::npos) {
+        size_t const length = MeasureToken(pattern.substr(at));
+        if (length == 0) {
             ++at;
             continue;
         }
-        size_t const end = close + brackets->close.size();
         visit(pattern.substr(literal, at - literal), false);
-        visit(pattern.substr(at, end - at), true);
-        literal = at = end;
+        visit(pattern.substr(at, length), true);
+        literal = at += length;
     }
     visit(pattern.substr(literal), false);
 }

@@ -101,7 +101,7 @@ StripBaker::StripBaker(Model const& model, TexturedFaces const& faces, BakeOptio
       _options(options),
       _maps(maps),
       _job(job),
-      _surface(model.GetRefiner()),
+      _surface(model.GetLimitSurface()),
       _baked{model,
              _surface,
              faces.surface,

@@ -77,7 +77,7 @@ private:
     BakeOptions const& _options;
     std::vector<std::unique_ptr<Map>> const& _maps;
     Job& _job;
-    eval::LimitSurface _surface;
+    eval::LimitSurface const& _surface;
     BakedSurface const _baked;
     std::vector<double> const _positions;  // relative to the surface's floatOrigin
     std::vector<Pass> _passes;

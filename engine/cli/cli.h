@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/cli/console.h"
+#include "engine/cli/options/number.h"
 #include "engine/cli/report.h"
 #include "engine/cli/run_command.h"
 #include "engine/io/written_numbers.h"
@@ -19,6 +20,9 @@
 #include "engine/scene/model.h"
 
 namespace limn::cli {
+
+/// How many threads there may be.
+inline constexpr NumberRange<int> kThreadCounts{1, 1024};
 
 /// Options every verb shares.
 struct CommonOptions {

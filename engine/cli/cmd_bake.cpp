@@ -188,7 +188,7 @@ nlohmann::json ToJson(engine::AuditReport const& audit, engine::BakeReport const
                          {"p99", seam.p99},
                          {"place", seam.place},
                          {"bound", OrNull(seam.bound)},
-                         {"within", seam.isWithin}});
+                         {"within", seam.bound ? nlohmann::json(seam.isWithin) : nullptr}});
         if (seam.max >= worst.max) worst = seam;
     }
     for (auto const& c : audit.gaussBonnet) {

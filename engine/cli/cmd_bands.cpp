@@ -26,7 +26,7 @@ Verb AddBands(CLI::App& app) {
         app.add_subcommand("bands", "Split a mesh into frequency bands whose sum is the mesh");
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();
     verb->add_option("-o,--output", a->prefix,
-                     "PREFIX of PREFIX.band0.obj ... and PREFIX.remainder.obj")
+                     "PREFIX, without an ending, of PREFIX.band0.obj ... and PREFIX.remainder.obj")
         ->required();
     AddNumberOption(*verb, "--count", a->count, "number of bands", {1, 1000})->required();
     AddAlpha(*verb, a->alpha);

@@ -6,6 +6,7 @@
 #include "engine/cli/option_names.h"
 #include "engine/scene/mesh_info.h"
 #include "engine/scene/subdivision_names.h"
+#include "engine/scene/udim.h"
 
 namespace limn::cli {
 
@@ -55,14 +56,6 @@ nlohmann::json ToJson(engine::MeshInfo const& info, engine::Model const& model) 
             {"defects", defects}};
 }
 
-/// "1001, 1002", and no more than a line of them.
-std::string ListTiles(std::vector<int> const& tiles) {
-    constexpr size_t kMost = 20;
-    if (tiles.size() <= kMost) return fmt::format("{}", fmt::join(tiles, ", "));
-    return fmt::format("{} and {} more", fmt::join(tiles.begin(), tiles.begin() + kMost, ", "),
-                       tiles.size() - kMost);
-}
-
 std::string ToText(engine::Model const& model, engine::MeshInfo const& info) {
     std::string text = fmt::format("{}\n", model.GetPath());
     auto const line = [&](char const* what, std::string const& value) {
@@ -95,9 +88,9 @@ std::string ToText(engine::Model const& model, engine::MeshInfo const& info) {
     } else {
         line("UVs",
              fmt::format(
-                 "tiles {}; faces: {} overlapping, {} flipped, {} without area, {} out of range, "
+                 "tiles {}; faces: {} over others, {} flipped, {} without area, {} out of range, "
                  "{} without UVs",
-                 ListTiles(info.uv.tiles), info.uv.overlapFaces, info.uv.flippedFaces,
+                 engine::ListTiles(info.uv.tiles), info.uv.overlapFaces, info.uv.flippedFaces,
                  info.uv.zeroAreaFaces, info.uv.outOfRangeFaces, info.uv.bareFaces));
     }
     if (auto const& weld = model.GetWeld()) {

@@ -35,7 +35,8 @@ Verb AddMorph(CLI::App& app) {
     verb->add_option("FROM", a->from, "OBJ, PLY or OFF")->required();
     verb->add_option("TO", a->to, "the same faces; its tags and UVs are those of the result")
         ->required();
-    verb->add_option("-o,--output", a->prefix, "PREFIX of PREFIX.0001.obj ...")->required();
+    verb->add_option("-o,--output", a->prefix, "PREFIX, without an ending, of PREFIX.0001.obj ...")
+        ->required();
     AddNumberOption(*verb, "--detail", a->options.detail,
                     "the last band of the difference to keep (default 2)", {0, 1000});
     AddNumberOption(*verb, "--rate", a->options.rate,

@@ -7,9 +7,11 @@
 #include <fmt/format.h>
 
 #include "engine/cli/names.h"
+#include "engine/cli/options/example_values.h"
 #include "engine/cli/options/nearest_words.h"
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/option_list.h"
+#include "engine/cli/options/parse_faults.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/cli/terminal/completion.h"
 #include "engine/cli/terminal/manual.h"
@@ -42,7 +44,7 @@ void AddCommonOptions(CLI::App& app, CommonOptions& o) {
                         "right (default): faces are counter-clockwise from outside"));
     group(AddNumberOption(app, "--threads", o.numThreads,
                           "default: LIMN_THREADS, OPENIMAGEIO_THREADS, CUE_THREADS, else all cores",
-                          {1, 1024}));
+                          kThreadCounts));
     group(
         app.add_option("--report", o.reportPath, "write a JSON report of the run (- for stdout)"));
     group(AddWordOption(app, "--precision", o.precision, kPrecisionWords,
@@ -217,9 +219,14 @@ void Parser::Refuse(CLI::ParseError const& error) const {
     CLI::App const& verb = *parsed[0];
     std::string const tellsMore = fmt::format("(limn {} --help tells more)", verb.get_name());
     auto const offenders = verb.remaining();
-    if (offenders.empty())
+    if (offenders.empty()) {
+        auto const findExample = [&](CLI::Option const& option) {
+            return FindExample(MakeOptionEntry(option), verb.get_name(), _defaults.at(&option));
+        };
         throw Error(ErrorCode::BadOption,
-                    fmt::format("{}{} {}", error.what(), ExplainMissing(verb), tellsMore));
+                    fmt::format("{}{} {}", DescribeFault(verb, error, findExample),
+                                ExplainMissing(verb), tellsMore));
+    }
     std::string const offender = FindOffender(offenders);
     if (!IsFlag(offender)) {
         throw Error(ErrorCode::BadOption, fmt::format("{}: '{}' is one argument too many {}",

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <new>
 #include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -12,6 +13,7 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/option_names.h"
+#include "engine/cli/options/number.h"
 #include "engine/cli/parser.h"
 #include "engine/cli/version_text.h"
 #include "far_ext/error.h"
@@ -20,12 +22,21 @@ namespace limn::cli {
 
 namespace {
 
+/// What a variable of the environment holds; empty without one.
+std::string_view GetVariable(char const* name) {
+    char const* const value = std::getenv(name);
+    return value ? value : "";
+}
+
+/// \throws Error  BadOption: limn's own variable holds no number of threads
 int ChooseThreads(CommonOptions const& options) {
     if (options.numThreads > 0) return options.numThreads;
-    for (char const* name : {"LIMN_THREADS", "OPENIMAGEIO_THREADS", "CUE_THREADS"}) {
-        char const* const value = std::getenv(name);
-        int const threads = value ? std::atoi(value) : 0;
-        if (threads > 0 && threads <= 1024) return threads;
+    constexpr char const* kOwn = "LIMN_THREADS";
+    if (auto const text = GetVariable(kOwn); !text.empty())
+        return ParseNumber<int>(kOwn, text, kThreadCounts);
+    // Those of other programs may hold what means something to them only.
+    for (char const* name : {"OPENIMAGEIO_THREADS", "CUE_THREADS"}) {
+        if (auto const count = FindNumber<int>(GetVariable(name), kThreadCounts)) return *count;
     }
     return tbb::info::default_concurrency();
 }

@@ -262,10 +262,11 @@ void Warn(Model const& model, DifferentialOptions const& options, DifferentialRe
                         report.tangentialShare, eval::kDirMagLimit));
     }
     if (std::abs(report.sizeRatio - 1.0) > 0.1) {
-        job.Warn(fmt::format(
-            "the result has {:.2f} times the size of the spatial refinement; `spatialLevels` 1 "
-            "brings coarse cages nearer",
-            report.sizeRatio));
+        bool const isScaled = !options.edit.factors.empty();
+        job.Warn(fmt::format("the result has {:.2f} times the size of the spatial refinement; {}",
+                             report.sizeRatio,
+                             isScaled ? "factors of the `edit` that are nearer to 1 change it less"
+                                      : "`spatialLevels` 1 brings coarse cages nearer"));
     }
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/fit/bands.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <Eigen/Core>
@@ -76,9 +78,28 @@ std::vector<double> Sharpen(Model const& model, SharpenOptions const& options, J
     auto const A = eval::LimitOperator::Build(model.GetRefiner(), 0, {.alpha = options.alpha});
     job.Start("filtering");
     std::vector<double> positions = model.GetPositions();
-    for (int step = 0; step < options.steps; ++step) {
+    Extent const before = FindExtent(positions);
+    int firstGrown = 0;
+    for (int step = 1; step <= options.steps; ++step) {
         job.CheckStopped();
         eval::Sharpen(A, 3, options.first, options.last, 1, positions);
+        if (!std::ranges::all_of(positions, [](double x) { return std::isfinite(x); })) {
+            throw Error(ErrorCode::TooLarge,
+                        fmt::format("{}: `steps` {}: after {} of them coordinates are beyond the "
+                                    "range of double",
+                                    model.GetPath(), options.steps, step));
+        }
+        if (firstGrown == 0 && FindGrowth(before, FindExtent(positions)) > kMostGrown)
+            firstGrown = step;
+    }
+    if (firstGrown > 0) {
+        job.Warn(fmt::format(
+            "{}: after {} of {} steps the mesh reaches more than {} times as far as at the start, "
+            "at the "
+            "end {:.3g} times; each step multiplies the highest frequencies by up to {}: fewer "
+            "`steps`, or a smaller `last`",
+            model.GetPath(), firstGrown, options.steps, kMostGrown,
+            FindGrowth(before, FindExtent(positions)), 2 + options.last - options.first));
     }
     return positions;
 }

@@ -44,6 +44,10 @@ struct SharpenOptions {
     int steps = 1;
     double alpha = 0.0;
 };
+
+/// \param job     told where the mesh outgrows itself
+/// \throws Error  BadOption: first and last are no bands.  TooLarge: steps lead beyond double
+/// \throws Stopped
 std::vector<double> Sharpen(Model const& model, SharpenOptions const& options, Job& job);
 
 }  // namespace limn::engine

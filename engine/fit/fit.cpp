@@ -190,6 +190,18 @@ void FitPrimvars(eval::Interpolator const& interpolator, eval::InterpolateOption
     }
 }
 
+/// Where A is nearly singular its inverse multiplies what alternates from vertex to vertex.
+void WarnOfGrowth(Model const& model, FitResult const& result, Job& job) {
+    double const growth =
+        FindGrowth(FindExtent(model.GetPositions()), FindExtent(result.mesh.positions));
+    if (!(growth > kMostGrown)) return;
+    job.Warn(
+        fmt::format("{}: the control mesh reaches {:.3g} times as far as the vertices that its "
+                    "limit passes through, for the smallest eigenvalue of the limit matrix is "
+                    "about {:.2g}; `alpha` 0.5 keeps it nearer",
+                    model.GetPath(), growth, result.lambdaMin));
+}
+
 }  // namespace
 
 bool FitResult::HasConverged() const {
@@ -221,6 +233,7 @@ FitResult FitToLimit(Model const& model, FitOptions const& options, Job& job) {
     result.lambdaMin =
         result.report.singularComponents.empty() ? interpolator.EstimateSmallestEigenvalue() : 0.0;
     Finish(model, options, job, result);
+    WarnOfGrowth(model, result, job);
     return result;
 }
 

@@ -55,7 +55,8 @@ struct FitResult {
 ///
 /// Where nobody has asked for a precision, it is that with which the file keeps the tolerance.
 ///
-/// \param job     told of a precision that was not asked for, or loses too much
+/// \param job     told of a precision that was not asked for, or loses too much, and of a control
+///                mesh that is much larger than the model
 /// \throws Error        BadMesh: a coordinate that is no number.  BadOption: alpha outside [0, 1]
 ///                      or with a scheme that has none
 /// \throws Stopped

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -41,6 +42,7 @@ public:
         ReadHeader();
         while (NextLine()) {
             Split();
+            RefuseSurplusFields();
             for (size_t c = 0; c < _columns.size(); ++c) {
                 std::string_view const field =
                     _columns[c] < _fields.size() ? _fields[_columns[c]] : std::string_view();
@@ -71,6 +73,8 @@ private:
             bool const isQuoted = start < line.size() && line[start] == '"';
             size_t const closing = isQuoted ? FindClosingQuote(line, start) : start;
             size_t const end = std::min(line.find(_separator, closing), line.size());
+            if (isQuoted && !Trim(line.substr(closing + 1, end - closing - 1)).empty())
+                _scan.Refuse("text stands behind the quote that ends a field");
             _fields.push_back(isQuoted ? Trim(line.substr(start + 1, closing - start - 1))
                                        : Trim(line.substr(start, end - start)));
             start = end + 1;
@@ -105,12 +109,23 @@ private:
         _scan.Refuse(fmt::format("the header needs the columns {}", wanted));
     }
 
+    /// Where a row has more than the header names, a number may stand in the wrong column: 0,5 is
+    /// two fields. Empty ones hold nothing; spreadsheets write them.
+    void RefuseSurplusFields() const {
+        auto const surplus = std::span(_fields).subspan(std::min(_numNames, _fields.size()));
+        if (std::ranges::all_of(surplus, [](std::string_view field) { return field.empty(); }))
+            return;
+        _scan.Refuse(fmt::format("the row has {} fields; the header names {} columns",
+                                 _fields.size(), _numNames));
+    }
+
     /// True if the header, split at the separator, has all columns of one of the layouts.
     bool FindLayout() {
         Split();
         for (_table.layout = 0; _table.layout < _layouts.size(); ++_table.layout) {
             if (!FindColumns(_layouts[_table.layout])) continue;
             _table.numColumns = _columns.size();
+            _numNames = _fields.size();
             return true;
         }
         return false;
@@ -129,20 +144,29 @@ private:
 
     /// A column by its very name, else by one that differs in capital letters.
     std::optional<size_t> FindColumn(std::string const& name) const {
-        auto found = std::ranges::find(_fields, name);
-        if (found == _fields.end()) {
-            auto const isAlike = [&](std::string_view field) { return AreAlike(field, name); };
-            found = std::ranges::find_if(_fields, isAlike);
-            if (found == _fields.end()) return std::nullopt;
-            if (std::find_if(found + 1, _fields.end(), isAlike) != _fields.end())
-                _scan.Refuse(fmt::format("the header has column '{}' twice", name));
-        }
+        auto const isSame = [&](std::string_view field) { return field == name; };
+        auto const isAlike = [&](std::string_view field) { return AreAlike(field, name); };
+        auto const column = FindOnly(isSame, name);
+        return column ? column : FindOnly(isAlike, name);
+    }
+
+    template <class Fits>
+    std::optional<size_t> FindOnly(Fits fits, std::string const& name) const {
+        auto const found = std::ranges::find_if(_fields, fits);
+        if (found == _fields.end()) return std::nullopt;
+        if (std::find_if(found + 1, _fields.end(), fits) != _fields.end())
+            _scan.Refuse(fmt::format("the header has column '{}' twice", name));
         return static_cast<size_t>(found - _fields.begin());
     }
 
     double ToNumber(std::string_view field, std::string const& column) const {
         auto const parsed = TextScanner::ParseNumber(field);
-        if (parsed.IsNumber() && parsed.length == field.size()) return parsed.value;
+        bool const isAll = parsed.length == field.size();
+        if (parsed.IsNumber() && isAll) return parsed.value;
+        if (parsed.IsUnheld() && isAll) {
+            _scan.Refuse(fmt::format("{} in column {} is {}", TextScanner::Quote(field), column,
+                                     DescribeUnheld(field)));
+        }
         bool const hasComma = field.find(',') != std::string_view::npos;
         _scan.Refuse(fmt::format("{} in column {} is no number{}", TextScanner::Quote(field),
                                  column, hasComma ? "; write a decimal point, not a comma" : ""));
@@ -156,6 +180,7 @@ private:
     std::string_view _line;
     std::vector<std::string_view> _fields;  // of the line
     std::vector<size_t> _columns;           // of the layout, among the fields
+    size_t _numNames = 0;                   // in the header
 };
 
 }  // namespace

@@ -21,8 +21,9 @@ struct NumberTable {
 /// capital letters; other columns are skipped. Fields are parted by commas, or all by semicolons,
 /// and may be quoted.
 ///
-/// \throws Error  BadMesh: another header, one that names a column twice, a field that is no finite
-///                number (file and line named).  Io
+/// \throws Error  BadMesh: another header, one that names a column twice, a row with more fields
+/// than
+///                the header, a field that is no finite number (file and line named).  Io
 NumberTable ReadNumberTable(std::string const& path,
                             std::vector<std::vector<std::string>> const& layouts);
 

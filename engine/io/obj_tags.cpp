@@ -34,7 +34,9 @@ void ObjTags::ReadLine() {
     else if (name == "hole")
         ReadHoles(counts);
     else if (!ReadRule(name, counts))
-        Ignore(name, kIsUnknown);
+        return Ignore(name, kIsUnknown);
+    _scan.DropComment();
+    if (!_scan.AtEndOfLine()) _surplus.Add(name, _scan.GetLineNumber());
 }
 
 /// True if the tag is a rule of refinement.
@@ -204,6 +206,10 @@ void ObjTags::Finish() {
                                               ignored.firstLine, TextScanner::Quote(ignored.name),
                                               ignored.why, more));
     }
+    if (_surplus.GetCount() == 0) return;
+    _scene.warnings.push_back(
+        fmt::format("{}:{}: {} of tags with more values than they take, which are not read",
+                    _scene.path, _surplus.GetFirstLine(), _surplus.Describe()));
 }
 
 void ObjTags::CheckIndices() const {

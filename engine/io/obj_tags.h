@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/io/skipped_lines.h"
 #include "engine/io/text_scanner.h"
 #include "engine/scene/scene.h"
 
@@ -55,6 +56,7 @@ private:
     Scene& _scene;
     std::vector<uint32_t> _creaseLines, _cornerLines, _holeLines;
     std::vector<Ignored> _ignored;
+    SkippedLines _surplus;
 };
 
 }  // namespace limn::engine

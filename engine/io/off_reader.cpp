@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/io/colour_range.h"
+#include "engine/io/skipped_lines.h"
 #include "engine/io/text_scanner.h"
 
 namespace limn::engine {
@@ -45,6 +46,7 @@ public:
         CheckRoom(numVertices, numFaces);
         ReadVertices(numVertices);
         ReadFaces(numFaces);
+        NoteRest();
         if (_keyword.hasTexture) {
             auto& cage = _scene.cage;
             cage.fvarChannels.push_back({cage.numVertices, cage.faceVertices});
@@ -94,6 +96,7 @@ private:
     }
 
     void ReadVertices(size_t count) {
+        SkippedLines surplus;
         _scene.positions.reserve(3 * count);
         for (size_t i = 0; i < count; ++i) {
             NextContentLine(fmt::format("vertex {} of {}", i, count).c_str());
@@ -103,6 +106,13 @@ private:
             for (char const* axis : {"u", "v"}) {
                 if (_keyword.hasTexture) _scene.uvs.push_back(_scan.Number(axis));
             }
+            if (!_scan.AtEndOfLine()) surplus.Add(_scan.Word(), _scan.GetLineNumber());
+        }
+        if (surplus.GetCount() > 0) {
+            _scene.warnings.push_back(fmt::format(
+                "{}:{}: {} of vertices with more than the keyword names, which is not read; "
+                "vertices have colours in COFF, normals in NOFF, texture coordinates in STOFF",
+                _scene.path, surplus.GetFirstLine(), surplus.DescribeCount()));
         }
         if (_keyword.hasColours && count > 0) {
             ScaleWholeColours(_colours);
@@ -146,6 +156,18 @@ private:
             cage.faceSizes.push_back(static_cast<int>(size));
             _scene.faceLines.push_back(_scan.GetLineNumber());
         }
+    }
+
+    void NoteRest() {
+        SkippedLines rest;
+        while (_scan.NextLine()) {
+            _scan.DropComment();
+            if (!_scan.AtEndOfLine()) rest.Add(_scan.Word(), _scan.GetLineNumber());
+        }
+        if (rest.GetCount() == 0) return;
+        _scene.warnings.push_back(
+            fmt::format("{}:{}: {} behind the last face that the file counts, not read",
+                        _scene.path, rest.GetFirstLine(), rest.DescribeCount()));
     }
 
     TextScanner _scan;

@@ -49,6 +49,10 @@ public:
             else
                 SkipElement(element);
         }
+        if (std::string const rest = _values.DescribeRest(); !rest.empty()) {
+            _scene.warnings.push_back(fmt::format(
+                "{}: {} behind the last row that the header counts, not read", _scene.path, rest));
+        }
         Finish();
     }
 
@@ -87,6 +91,7 @@ private:
         for (size_t i = 0; i < element.count; ++i) {
             _values.BeginRow(element, i);
             for (PlyProperty const& property : element.properties) SkipProperty(property);
+            _values.EndRow();
         }
     }
 
@@ -154,6 +159,7 @@ private:
             _values.BeginRow(element, i);
             for (size_t p = 0; p < targets.size(); ++p)
                 ReadVertexValue(element.properties[p], targets[p], i);
+            _values.EndRow();
         }
     }
 
@@ -215,6 +221,7 @@ private:
                         SkipProperty(property);
                 }
             }
+            _values.EndRow();
             if (size < 3)
                 _values.Refuse(fmt::format("a face has {} corners; at least 3 are needed", size));
             AddFace(size);
@@ -305,6 +312,7 @@ private:
                 else
                     SkipProperty(property);
             }
+            _values.EndRow();
         }
     }
 

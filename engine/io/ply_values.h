@@ -5,10 +5,12 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <string>
 
 #include <fmt/format.h>
 
 #include "engine/io/ply_header.h"
+#include "engine/io/skipped_lines.h"
 #include "engine/io/text_scanner.h"
 #include "far_ext/error.h"
 
@@ -50,6 +52,26 @@ public:
                                          element.count));
             }
         } while (_scan.AtEndOfLine());
+    }
+
+    /// Ends a row. \throws Error BadMesh: its line of text has more than the header names
+    void EndRow() const {
+        if (!IsText() || _scan.AtEndOfLine()) return;
+        Refuse(fmt::format("{} {} has more values than the header names, {} the first of them",
+                           _element, _index, TextScanner::Quote(_scan.Word())));
+    }
+
+    /// What follows the last row, for a warning: "7 bytes"; empty where it is white space.
+    std::string DescribeRest() {
+        if (IsText()) {
+            SkippedLines lines;
+            while (_scan.NextLine()) {
+                if (!_scan.AtEndOfLine()) lines.Add(_scan.Word(), _scan.GetLineNumber());
+            }
+            return lines.GetCount() == 0 ? "" : lines.DescribeCount();
+        }
+        size_t const last = _bytes.find_last_not_of(" \t\r\n");
+        return last == _bytes.npos ? "" : fmt::format("{} byte{}", last + 1, last == 0 ? "" : "s");
     }
 
     /// \param what    its name, for messages

@@ -28,13 +28,17 @@ public:
     size_t GetCount() const { return _count; }
     uint32_t GetFirstLine() const { return _firstLine; }
 
+    /// "1 line", "7 lines"
+    std::string DescribeCount() const {
+        return fmt::format("{} line{}", _count, _count == 1 ? "" : "s");
+    }
+
     /// "1 line ('vp')" or "7 lines ('curv', 'surf', ...)"
     std::string Describe() const {
         std::string words;
         for (std::string const& word : _words)
             words += (words.empty() ? "" : ", ") + TextScanner::Quote(word);
-        return fmt::format("{} line{} ({}{})", _count, _count == 1 ? "" : "s", words,
-                           _hasMoreWords ? ", ..." : "");
+        return fmt::format("{} ({}{})", DescribeCount(), words, _hasMoreWords ? ", ..." : "");
     }
 
 private:

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/io/unheld_number.h"
 #include "far_ext/error.h"
 
 namespace limn::engine {
@@ -134,6 +135,7 @@ public:
         size_t length = 0;
         std::errc code{};
 
+        bool IsUnheld() const { return code == std::errc::result_out_of_range; }
         bool IsNumber() const { return code == std::errc() && std::isfinite(value); }
         bool IsUsable() const { return code == std::errc() && std::abs(value) <= kLargest; }
     };
@@ -193,7 +195,9 @@ private:
     [[noreturn]] void RefuseNumber(char const* what, ParsedNumber const& parsed) {
         std::string_view const word = Word();
         if (word.empty()) Refuse(fmt::format("{} is missing", what));
-        if (parsed.code == std::errc::result_out_of_range || parsed.IsNumber()) {
+        if (parsed.IsUnheld() && IsTooSmall(word))
+            Refuse(fmt::format("{} is {}, {}", what, Quote(word), DescribeUnheld(word)));
+        if (parsed.IsUnheld() || parsed.IsNumber()) {
             Refuse(fmt::format("{} is {}; at most {:g} in magnitude is possible", what, Quote(word),
                                kLargest));
         }

@@ -42,6 +42,16 @@ Extent FindExtent(std::span<double const> positions) {
     return extent;
 }
 
+double FindGrowth(Extent const& before, Extent const& after) {
+    double longest = 0.0, reach = 0.0;
+    for (size_t c = 0; c < 3; ++c) {
+        double const middle = 0.5 * before.low[c] + 0.5 * before.high[c];
+        longest = std::max(longest, 0.5 * (before.high[c] - before.low[c]));
+        reach = std::max({reach, after.high[c] - middle, middle - after.low[c]});
+    }
+    return longest > 0.0 ? reach / longest : 1.0;
+}
+
 double GetFloatStep(double value) {
     return GetStep(value, 24, -149);
 }

@@ -22,6 +22,13 @@ struct Extent {
 /// \param positions  3 per point; of none, the box is the origin
 Extent FindExtent(std::span<double const> positions);
 
+/// How much farther than a box a mesh made from its own reaches, seen from the box's middle: 1
+/// where it fills it. Of a box without size 1.
+double FindGrowth(Extent const& before, Extent const& after);
+
+/// What a result may outgrow its input by without a word.
+inline constexpr double kMostGrown = 10.0;
+
 /// The distance from a number to the next one, as a float or of half precision.
 double GetFloatStep(double value);
 double GetHalfStep(double value);

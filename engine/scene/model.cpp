@@ -3,8 +3,11 @@
 
 #include <utility>
 
+#include <tbb/task_arena.h>
+
 #include "engine/scene/content_hash.h"
 #include "engine/scene/scene_checks.h"
+#include "eval/surface/limit_surface.h"
 #include "far_ext/error.h"
 #include "far_ext/topology/refiner.h"
 
@@ -19,7 +22,7 @@ Model Model::Build(Scene scene) {
     std::shared_ptr<Points const> points(
         new Points{std::exchange(scene.positions, {}), std::exchange(scene.sha256, {})});
     scene.normals.clear();  // for writers only: limits have their own
-    return {std::make_shared<Parts const>(Parts{std::move(scene), std::move(refiner)}),
+    return {std::shared_ptr<Parts const>(new Parts{std::move(scene), std::move(refiner)}),
             std::move(points)};
 }
 
@@ -33,6 +36,25 @@ Scene Model::MakeScene() const {
     Scene scene = _parts->scene;
     scene.positions = _points->positions;
     return scene;
+}
+
+eval::LimitSurface const& Model::GetLimitSurface() const {
+    return Get(_parts->limit, -1);
+}
+
+eval::LimitSurface const& Model::GetTextureSurface() const {
+    return Get(_parts->texture, 0);
+}
+
+eval::LimitSurface const& Model::Get(LazySurface& lazy, int fvarChannel) const {
+    std::call_once(lazy.isBuilt, [&] {
+        // Isolated, for a thread that waits for its own workers must not take up work of another
+        // one that waits for this surface.
+        tbb::this_task_arena::isolate([&] {
+            lazy.surface = std::make_shared<eval::LimitSurface const>(GetRefiner(), fvarChannel);
+        });
+    });
+    return *lazy.surface;
 }
 
 std::string const& Model::GetSha256() const {

@@ -14,6 +14,10 @@
 
 #include "engine/scene/scene.h"
 
+namespace limn::eval {
+class LimitSurface;
+}
+
 namespace limn::engine {
 
 /// A mesh as functions take it: a scene that has been checked, with its topology built. Parts that
@@ -62,6 +66,13 @@ public:
     Far::TopologyRefiner const& GetRefiner() const { return *_parts->refiner; }
     Far::TopologyLevel const& GetLevel() const { return _parts->refiner->GetLevel(0); }
 
+    /// How the limit is put together, and that of the texture coordinates: made when first asked
+    /// for and kept, for all bakes of the mesh.
+    ///
+    /// \throws Error  as eval::LimitSurface; of the latter BadOption: no texture coordinates
+    eval::LimitSurface const& GetLimitSurface() const;
+    eval::LimitSurface const& GetTextureSurface() const;
+
     /// As Scene's, ListGroups and SelectGroups.
     std::string NameFace(Index face) const { return _parts->scene.NameFace(face); }
     std::vector<std::string> ListGroups() const { return engine::ListGroups(_parts->scene); }
@@ -74,9 +85,14 @@ public:
 
 private:
     /// What models that differ in their positions share.
+    struct LazySurface {
+        std::shared_ptr<eval::LimitSurface const> surface{};
+        std::once_flag isBuilt{};
+    };
     struct Parts {
         Scene scene;  ///< all but positions and sha256, which are empty here
         std::unique_ptr<Far::TopologyRefiner const> refiner;
+        mutable LazySurface limit{}, texture{};
     };
     struct Points {
         std::vector<double> positions;
@@ -86,6 +102,8 @@ private:
 
     Model(std::shared_ptr<Parts const> parts, std::shared_ptr<Points const> points)
         : _parts(std::move(parts)), _points(std::move(points)) {}
+
+    eval::LimitSurface const& Get(LazySurface& lazy, int fvarChannel) const;
 
     std::shared_ptr<Parts const> _parts;
     std::shared_ptr<Points const> _points;

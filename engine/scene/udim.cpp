@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace limn::engine {
 
@@ -53,6 +54,13 @@ std::optional<std::string> ExpandUdimToken(std::string_view token, int number) {
     auto const found = std::ranges::find(kTokens, token, &UdimToken::text);
     if (found == std::end(kTokens)) return std::nullopt;
     return Write(found->form, number);
+}
+
+std::string ListTiles(std::vector<int> const& tiles) {
+    constexpr size_t kMost = 20;
+    if (tiles.size() <= kMost) return fmt::format("{}", fmt::join(tiles, ", "));
+    return fmt::format("{} and {} more", fmt::join(tiles.begin(), tiles.begin() + kMost, ", "),
+                       tiles.size() - kMost);
 }
 
 std::string ListUdimTokens() {

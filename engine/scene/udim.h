@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace limn::engine {
 
@@ -39,6 +40,9 @@ std::string ReplaceUdimToken(std::string pattern, int number);
 
 /// What a token stands for in a tile; none if it is no token of UDIM. \pre number >= 1001
 std::optional<std::string> ExpandUdimToken(std::string_view token, int number);
+
+/// "1001, 1002", and no more than a line of them.
+std::string ListTiles(std::vector<int> const& tiles);
 
 /// "<UDIM>, {udim}, ..."
 std::string ListUdimTokens();

@@ -173,24 +173,36 @@ void FindTiles(Model const& model, std::vector<char> const& isFlat, UVInfo& info
 
 }  // namespace
 
+std::vector<char> FindFlatFaces(Model const& model) {
+    constexpr double kLeastArea = 1e-12;
+    std::vector<char> isFlat(model.GetCage().faceSizes.size(), 0);
+    if (!model.HasUVs()) return isFlat;
+    FaceCorners at{0, 0};
+    for (; at.face < model.GetCage().GetNumFaces(); ++at.face) {
+        double const area = GetSignedArea(GetTexturePolygon(model, at));
+        isFlat[at.face] = model.HasUVs(at.face) && std::abs(area) <= kLeastArea;
+        at.first += static_cast<size_t>(model.GetCage().faceSizes[at.face]);
+    }
+    return isFlat;
+}
+
 UVInfo DescribeUVs(Model const& model) {
     UVInfo info;
     info.present = model.HasUVs();
     if (!info.present) return info;
-    std::vector<char> isFlat;
+    auto const isFlat = FindFlatFaces(model);
     FacesOfTile facesOfTile;
     FaceCorners at{0, 0};
     for (; at.face < model.GetCage().GetNumFaces(); ++at.face) {
         auto const polygon = GetTexturePolygon(model, at);
         auto const box = FindBox(polygon);
-        double const area = GetSignedArea(polygon);
-        isFlat.push_back(std::abs(area) <= 1e-12);
-        if (model.HasUVs(at.face)) {
-            info.zeroAreaFaces += isFlat.back();
-            info.flippedFaces += !isFlat.back() && area < 0.0;
-            if (box.IsInRange() && !isFlat.back()) AddToTiles(at, box, facesOfTile);
-        } else {
+        if (!model.HasUVs(at.face)) {
             ++info.bareFaces;
+        } else if (isFlat[at.face]) {
+            ++info.zeroAreaFaces;
+        } else {
+            info.flippedFaces += GetSignedArea(polygon) < 0.0;
+            if (box.IsInRange()) AddToTiles(at, box, facesOfTile);
         }
         at.first += static_cast<size_t>(model.GetCage().faceSizes[at.face]);
     }

@@ -52,7 +52,7 @@ TEST_F(Cli, WithoutUdimTokenFacesElsewhereAreNamedAndNothingIsBaked) {
 
 TEST_F(Cli, TileWithoutTexelsIsStatus3) {
     ExpectError(Bake(folder.Write("two.obj", kTwoTiles), "a.<UDIM>.exr", {"--tiles", "1005"}), 3,
-                "no texel is covered in the tiles asked for");
+                "no texel is covered in the tiles asked for; there are: 1001, 1012");
     EXPECT_EQ(folder.List(), (Words{"two.obj"}));
 }
 

@@ -42,6 +42,31 @@ TEST(Number, MessageQuotesOptionAndTextAndSaysWhatWouldBeRight) {
     EXPECT_EQ(message([] { ParseNumber<double>("--weld", "x"); }), "--weld: 'x' is no number");
 }
 
+TEST(Number, TooLargeOrTooSmallIsToldAsSuchWhereTheRangeHasNoEndThere) {
+    auto const refusal = [](std::string const& text, NumberRange<double> const& range = {}) {
+        return test::RefusalOf([&] { ParseNumber("--width", text, range); });
+    };
+    std::string const large =
+        "is too large a number; at most 1.79769e+308 in magnitude is possible";
+    std::string const small =
+        "is too small a number; 0, or at least 4.94066e-324 in magnitude, is possible";
+    std::string const zeros(400, '0');
+    for (std::string const text : {"1e400", "-1e400", "1e+400", "0.1e99999999999999999999"})
+        EXPECT_EQ(refusal(text), "--width: '" + text + "' " + large);
+    for (std::string const text : {"1e-400", "-1e-400", "+1e-400", "1e-99999999999999999999"})
+        EXPECT_EQ(refusal(text), "--width: '" + text + "' " + small);
+    EXPECT_EQ(refusal("1" + zeros + "e-1"), "--width: '1" + zeros + "e-1' " + large);
+    EXPECT_EQ(refusal("0." + zeros + "1e+1"), "--width: '0." + zeros + "1e+1' " + small);
+    EXPECT_EQ(refusal("1e-400", {.low = 0.0}), "--width: '1e-400' " + small);
+    EXPECT_EQ(refusal("-1e400", {.low = 0.0}), "--width: '-1e400' is no number from 0 up");
+    EXPECT_EQ(refusal("1e-400", {1e-6, 0.5}), "--width: '1e-400' is no number from 1e-06 to 0.5");
+    EXPECT_EQ(refusal("1e400x"), "--width: '1e400x' is no number");
+    EXPECT_EQ(
+        test::RefusalOf([] { ParseNumber<uint64_t>("--noise-seed", "18446744073709551616"); }),
+        "--noise-seed: '18446744073709551616' is too large a number; at most "
+        "18446744073709551615 in magnitude is possible");
+}
+
 TEST(TexelSize, HasOneNumberOrTwoAndKIs1024) {
     struct Case {
         char const* text;

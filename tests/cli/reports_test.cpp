@@ -12,6 +12,7 @@
 
 #include "engine/io/file.h"
 #include "support/cli.h"
+#include "support/source_tree.h"
 
 namespace limn {
 namespace {
@@ -204,6 +205,44 @@ TEST_F(Cli, BakeReportHasItsKeys) {
     }
     EXPECT_EQ(report["outputs"][0]["map"], "mean");
     EXPECT_EQ(report["outputs"][1]["file"], folder / "normal.exr");
+}
+
+/// All keys of a JSON value's objects, but those of the options.
+void ListKeys(json const& value, std::set<std::string>& keys) {
+    if (!value.is_structured()) return;  // a scalar's only item is itself
+    for (auto const& [key, member] : value.items()) {
+        if (value.is_object()) keys.insert(key);
+        if (key != "effective_options") ListKeys(member, keys);
+    }
+}
+
+TEST_F(Cli, EveryKeyOfABakesReportIsExplained) {
+    std::string const mesh = folder.Write(
+        "spot.obj", "usemtl skin\n" + test::ReadText(test::ScenePath("spot/spot.obj")));
+    Outcome const outcome = Bake(
+        mesh, "{map}.{group}.exr",
+        {"--maps", "position,displacement", "--against", mesh, "--origin", "auto", "--audit",
+         "--picture", "--preview", "--seam-bound", "position=1", "--report", folder / "r.json"});
+    ASSERT_TRUE(outcome.status == 0 || outcome.status == 4) << outcome.err;
+    std::set<std::string> keys;
+    ListKeys(Report(), keys);
+    for (char const* key : {"audits", "group", "bound", "origin", "tangential_rms", "pictures"})
+        EXPECT_TRUE(keys.contains(key)) << key;
+    std::string const page = test::ReadText(test::kSourceRoot / "docs/running.md");
+    for (std::string const& key : keys) EXPECT_TRUE(Contains(page, "`" + key + "`")) << key;
+}
+
+TEST_F(Cli, ASeamIsWithinOrBeyondABoundOnlyWhereThereIsOne) {
+    Outcome const outcome =
+        Bake(test::ScenePath("spot/spot.obj"), "{map}.exr",
+             {"--maps", "mean,position,normal", "--audit", "--audit-bound", "1", "--seam-bound",
+              "position=10,normal=0", "--report", folder / "r.json"});
+    ExpectError(outcome, 4, "normal");
+    json const seams = Report()["audit"]["seams"];
+    EXPECT_EQ(seams[0]["bound"], nullptr);
+    EXPECT_EQ(seams[0]["within"], nullptr);
+    EXPECT_EQ(seams[1]["within"], true);
+    EXPECT_EQ(seams[2]["within"], false);
 }
 
 TEST_F(Cli, ReportHoldsTheWarningsEvenWhenQuiet) {

@@ -100,6 +100,82 @@ TEST(Typing, EveryNumberOptionQuotesWhatIsNone) {
     });
 }
 
+TEST(Typing, OwnVariableOfThreadsIsRefusedWhereTheOptionWouldBe) {
+    auto const info = [](Words const& environment, Words const& more = {}) {
+        return Limn(Words{"info", Shape("catmark_cube"), "--json"} + more,
+                    {.environment = environment});
+    };
+    Outcome const plain = info({});
+    for (std::string const text : {"abc", "0", "-1", "1e3", "2 ", "1025", "99999999999"}) {
+        ExpectError(info({"LIMN_THREADS=" + text}), 2,
+                    "LIMN_THREADS: '" + text + "' is no whole number from 1 to 1024");
+        EXPECT_EQ(info({"LIMN_THREADS=" + text}, {"--threads", "2"}).out, plain.out);
+        EXPECT_EQ(info({"OPENIMAGEIO_THREADS=" + text, "CUE_THREADS=" + text}).out, plain.out);
+    }
+    EXPECT_EQ(info({"LIMN_THREADS="}).out, plain.out);
+}
+
+TEST(Typing, FirstVariableWithANumberOfThreadsCounts) {
+    test::TemporaryFolder const folder;
+    auto const threads = [&](Words const& environment) {
+        Words const words{"info", Shape("catmark_cube"), "--report", folder / "r.json"};
+        EXPECT_EQ(Limn(words, {.environment = environment}).status, 0);
+        return ReadJson(folder / "r.json")["effective_options"]["threads"].get<int>();
+    };
+    EXPECT_EQ(threads({"LIMN_THREADS=2", "OPENIMAGEIO_THREADS=3", "CUE_THREADS=4"}), 2);
+    EXPECT_EQ(threads({"LIMN_THREADS=", "OPENIMAGEIO_THREADS=3", "CUE_THREADS=4"}), 3);
+    EXPECT_EQ(threads({"LIMN_THREADS=", "OPENIMAGEIO_THREADS=0", "CUE_THREADS=4"}), 4);
+}
+
+/// Calls `check(verb, option)` for every option that takes a value.
+template <class Check>
+void ForEachOptionWithAValue(Check check) {
+    cli::Parser const parser;
+    size_t count = 0;
+    for (CLI::App const* verb : cli::ListVerbs(parser.GetApp())) {
+        for (OptionEntry const& option : cli::ListOptions(*verb)) {
+            if (option.value == OptionEntry::Value::None || option.IsPositional()) continue;
+            check(verb->get_name(), option);
+            ++count;
+        }
+    }
+    EXPECT_GT(count, 150u);
+}
+
+TEST(Typing, AnOptionWithoutItsValueIsToldWithAnExampleThatItTakes) {
+    ForEachOptionWithAValue([](std::string const& verb, OptionEntry const& option) {
+        std::string const& flag = option.longFlag;
+        std::string const refusal = Refusal({verb, "a.obj", flag});
+        std::string const start = flag + " needs a value, such as " + flag + " ";
+        ASSERT_TRUE(refusal.starts_with(start)) << verb << ": " << refusal;
+        size_t const end = std::min(refusal.find(" (limn"), refusal.find("; files stand"));
+        std::string example = refusal.substr(start.size(), end - start.size());
+        EXPECT_FALSE(example.empty()) << refusal;
+        std::erase(example, '\'');
+        std::string const next = Refusal({verb, "a.obj", flag, example});
+        EXPECT_FALSE(next.starts_with(flag)) << verb << ": " << next;
+    });
+}
+
+TEST(Typing, WhatTheParserFindsIsToldInOurWords) {
+    auto const expect = [](Words const& words, std::string const& says) {
+        EXPECT_TRUE(Refusal(words).starts_with(says)) << Refusal(words);
+    };
+    expect({"info"}, "MESH is required, such as spot.obj (limn info --help");
+    expect({"morph", "a.obj"}, "TO is required, such as smile.obj (");
+    expect({"completion"}, "SHELL is required, such as bash (");
+    expect({"morph", "a.obj", "b.obj"}, "--output is required, such as --output out/spot (");
+    expect({"bake", "a.obj", "--view", "1,2"},
+           "--view takes 3 values and has 2, such as --view 1,0.6,0.8 (");
+    expect({"bake", "a.obj", "--view", "1,2,3,4"}, "--view takes 3 values and has 4");
+    expect({"info", "a.obj", "--threads", "1", "--threads", "2"},
+           "--threads takes one value and has 2 (");
+    expect({"info", "a.obj", "--quiet", "--verbose"}, "--quiet and --verbose exclude each other (");
+    expect({"smooth", "a.obj", "-o", "b.obj", "--view", "1,2,3"},
+           "--view needs --picture, such as --picture out/spot.png (");
+    expect({"info", "a.obj", "--json=maybe"}, "--json takes no value (");
+}
+
 TEST(Typing, TextsWithNumbersQuoteTheirPartThatIsNone) {
     auto const expect = [](Words const& words, std::string const& says) {
         ExpectError(Limn(words), 2, says);
@@ -108,6 +184,8 @@ TEST(Typing, TextsWithNumbersQuoteTheirPartThatIsNone) {
     Words const bake{"bake", mesh, "-o", "a.exr", "--maps", "mean"};
     expect(bake + Words{"--size", "abc"}, "--size: 'abc' is no number of texels from 1 to 65536");
     expect(bake + Words{"--tiles", "1001,x"}, "--tiles: 'x' is no whole number from 1001 to 9999");
+    expect(bake + Words{"--preview", "--preview-range", "0,1e400"},
+           "--preview-range: '1e400' is too large a number");
     expect(bake + Words{"--encode", "1,x"}, "--encode: 'x' is no number");
     expect(bake + Words{"--audit", "--seam-bound", "mean=x"}, "--seam-bound: 'x' is no number");
     Words const field{"field", mesh, "-o", "a.obj"};

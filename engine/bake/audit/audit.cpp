@@ -17,7 +17,7 @@ AuditInput::AuditInput(Model const& bakedModel, BakeOptions const& bakeOptions,
       options(bakeOptions),
       bake(bakeReport),
       job(auditJob),
-      surface(model.GetRefiner()),
+      surface(model.GetLimitSurface()),
       faces(model, options.groups, job) {}
 
 TileGrid AuditInput::MakeGrid(int tile) const {

@@ -23,7 +23,7 @@ struct AuditInput {
     BakeOptions const& options;
     BakeReport const& bake;
     Job const& job;
-    eval::LimitSurface surface;
+    eval::LimitSurface const& surface;
     TexturedFaces faces;
 };
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/io/unheld_number.h"
 #include "far_ext/error.h"
 
 namespace limn::engine {
@@ -20,6 +21,10 @@ std::optional<double> ParseNumber(std::string_view text) {
     double value = 0.0;
     char const* const end = text.data() + text.size();
     auto const [stop, code] = std::from_chars(text.data(), end, value);
+    if (code == std::errc::result_out_of_range && stop == end) {
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("`previewRange`: '{}' is {}", text, DescribeUnheld(text)));
+    }
     if (code != std::errc() || stop != end || !std::isfinite(value)) return std::nullopt;
     return value;
 }

@@ -107,7 +107,7 @@ public:
     SurfaceLook(Model const& model, std::vector<std::string> const& groups, Orientation orientation,
                 PictureView const& view, int size, Job const& job)
         : _job(job),
-          _surface(model.GetRefiner()),
+          _surface(model.GetLimitSurface()),
           _faces(model, groups, job),
           _texture(_faces.surface, _faces.uvs),
           _grid(model, _surface, orientation),
@@ -204,7 +204,7 @@ private:
     }
 
     Job const& _job;
-    eval::LimitSurface _surface;
+    eval::LimitSurface const& _surface;
     TexturedFaces _faces;
     UVRaster _texture;
     PlaceGrid _grid;

@@ -15,8 +15,8 @@ namespace limn::engine {
 
 namespace {
 
-int FindUVChannel(Model const& model) {
-    if (model.HasUVs()) return 0;
+eval::LimitSurface const& RequireTextureSurface(Model const& model) {
+    if (model.HasUVs()) return model.GetTextureSurface();
     throw Error(ErrorCode::BadMesh,
                 fmt::format("{}: the mesh has no texture coordinates; a bake needs them ('vt' in "
                             "OBJ, s,t in PLY)",
@@ -74,7 +74,7 @@ std::vector<UVBounds> FindBounds(TexturedFaces const& faces, Job const& job) {
 
 TexturedFaces::TexturedFaces(Model const& model, std::vector<std::string> const& groups,
                              Job const& job)
-    : surface(model.GetRefiner(), FindUVChannel(model)),
+    : surface(RequireTextureSurface(model)),
       uvs(model.GetUVs()),
       isBaked(SelectFaces(model, groups, surface)),
       bounds(FindBounds(*this, job)) {}

@@ -21,10 +21,10 @@ struct TexturedFaces {
     ///                there. BadOption: a group that there is not
     TexturedFaces(Model const& model, std::vector<std::string> const& groups, Job const& job);
 
-    eval::LimitSurface surface;    ///< of the texture coordinates
-    std::span<double const> uvs;   ///< 2 per value
-    std::vector<char> isBaked;     ///< per face: of the groups, with a limit and with UVs
-    std::vector<UVBounds> bounds;  ///< per face; meaningless unless it is baked
+    eval::LimitSurface const& surface;  ///< of the texture coordinates
+    std::span<double const> uvs;        ///< 2 per value
+    std::vector<char> isBaked;          ///< per face: of the groups, with a limit and with UVs
+    std::vector<UVBounds> bounds;       ///< per face; meaningless unless it is baked
 };
 
 }  // namespace limn::engine

@@ -10,21 +10,28 @@
 
 #include <fmt/format.h>
 
+#include "engine/io/unheld_number.h"
 #include "far_ext/error.h"
 
 namespace limn::cli {
 
 namespace {
 
-/// The number that is all of the text.
+/// The number that is all of a text.
 template <class Number>
-std::optional<Number> FindNumber(std::string_view text, NumberRange<Number> const& range) {
-    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+struct ReadNumber {
     Number value{};
-    auto const [stop, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (code != std::errc() || stop != text.data() + text.size()) return std::nullopt;
-    if (!(value >= range.low && value <= range.high)) return std::nullopt;  // nor is NaN
-    return value;
+    std::errc code{};  ///< result_out_of_range: it is a number, which the type cannot hold
+};
+
+template <class Number>
+ReadNumber<Number> Read(std::string_view text) {
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+    ReadNumber<Number> read;
+    char const* const end = text.data() + text.size();
+    auto const [stop, code] = std::from_chars(text.data(), end, read.value);
+    read.code = stop == end ? code : std::errc::invalid_argument;
+    return read;
 }
 
 /// As short as it can be said: 1e+12, not 1000000000000.0.
@@ -49,6 +56,27 @@ std::string_view GetKind() {
     return std::integral<Number> ? "whole number" : "number";
 }
 
+/// What is wrong with a text that is no number of the range.
+template <class Number>
+std::string DescribeNumberFault(std::string_view text, NumberRange<Number> const& range) {
+    if (Read<Number>(text).code == std::errc::result_out_of_range) {
+        // The range says what is wrong where it ends before the type does.
+        NumberRange<Number> const any;
+        bool const isOpen = text.starts_with('-') ? range.low == any.low : range.high == any.high;
+        if constexpr (std::integral<Number>) {
+            if (isOpen) {
+                return fmt::format("too large a number; at most {} in magnitude is possible",
+                                   any.high);
+            }
+        } else {
+            bool const isAllowed =
+                engine::IsTooSmall(text) ? range.low <= 0.0 && range.high >= 0.0 : isOpen;
+            if (isAllowed) return engine::DescribeUnheld(text);
+        }
+    }
+    return fmt::format("no {}{}", GetKind<Number>(), DescribeBounds(range));
+}
+
 /// "2048", "2k" or "2K".
 std::optional<int> FindTexels(std::string_view text, NumberRange<int> const& range) {
     bool const isKilo = text.ends_with('k') || text.ends_with('K');
@@ -61,6 +89,14 @@ std::optional<int> FindTexels(std::string_view text, NumberRange<int> const& ran
 }  // namespace
 
 template <class Number>
+std::optional<Number> FindNumber(std::string_view text, NumberRange<Number> const& range) {
+    auto const [value, code] = Read<Number>(text);
+    if (code != std::errc()) return std::nullopt;
+    if (!(value >= range.low && value <= range.high)) return std::nullopt;  // nor is NaN
+    return value;
+}
+
+template <class Number>
 std::string MakePlaceholder(NumberRange<Number> const& range) {
     return (std::integral<Number> ? "INT" : "FLOAT") + DescribeBounds(range);
 }
@@ -69,13 +105,16 @@ template <class Number>
 Number ParseNumber(std::string_view option, std::string_view text,
                    NumberRange<Number> const& range) {
     if (auto const value = FindNumber(text, range)) return *value;
-    throw Error(ErrorCode::BadOption, fmt::format("{}: '{}' is no {}{}", option, text,
-                                                  GetKind<Number>(), DescribeBounds(range)));
+    throw Error(ErrorCode::BadOption,
+                fmt::format("{}: '{}' is {}", option, text, DescribeNumberFault(text, range)));
 }
 
 template std::string MakePlaceholder(NumberRange<int> const&);
 template std::string MakePlaceholder(NumberRange<uint64_t> const&);
 template std::string MakePlaceholder(NumberRange<double> const&);
+template std::optional<int> FindNumber(std::string_view, NumberRange<int> const&);
+template std::optional<uint64_t> FindNumber(std::string_view, NumberRange<uint64_t> const&);
+template std::optional<double> FindNumber(std::string_view, NumberRange<double> const&);
 template int ParseNumber(std::string_view, std::string_view, NumberRange<int> const&);
 template uint64_t ParseNumber(std::string_view, std::string_view, NumberRange<uint64_t> const&);
 template double ParseNumber(std::string_view, std::string_view, NumberRange<double> const&);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -20,7 +21,14 @@ struct NumberRange {
 template <class Number>
 std::string MakePlaceholder(NumberRange<Number> const& range);
 
+/// The number of the range that is all of the text, or nothing.
+///
 /// \param Number  int, uint64_t or double
+template <class Number>
+std::optional<Number> FindNumber(std::string_view text, NumberRange<Number> const& range = {});
+
+/// The same.
+///
 /// \throws Error  BadOption: "--levels: 'abc' is no whole number from 0 to 10"
 template <class Number>
 Number ParseNumber(std::string_view option, std::string_view text,

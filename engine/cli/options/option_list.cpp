@@ -15,7 +15,9 @@ OptionEntry::Value FindValue(CLI::Option const& option, OptionEntry const& entry
     return isNumber ? OptionEntry::Value::Number : OptionEntry::Value::Other;
 }
 
-OptionEntry Describe(CLI::Option const& option) {
+}  // namespace
+
+OptionEntry MakeOptionEntry(CLI::Option const& option) {
     OptionEntry entry;
     if (!option.get_snames().empty()) entry.shortFlag = "-" + option.get_snames()[0];
     if (!option.get_lnames().empty()) entry.longFlag = "--" + option.get_lnames()[0];
@@ -29,8 +31,6 @@ OptionEntry Describe(CLI::Option const& option) {
     return entry;
 }
 
-}  // namespace
-
 std::string OptionEntry::JoinFlags() const {
     return shortFlag.empty() || longFlag.empty() ? shortFlag + longFlag
                                                  : shortFlag + ", " + longFlag;
@@ -38,7 +38,8 @@ std::string OptionEntry::JoinFlags() const {
 
 std::vector<OptionEntry> ListOptions(CLI::App const& app) {
     std::vector<OptionEntry> options;
-    for (CLI::Option const* const option : app.get_options()) options.push_back(Describe(*option));
+    for (CLI::Option const* const option : app.get_options())
+        options.push_back(MakeOptionEntry(*option));
     return options;
 }
 

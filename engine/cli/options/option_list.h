@@ -29,6 +29,9 @@ struct OptionEntry {
     std::string JoinFlags() const;
 };
 
+/// One option.
+OptionEntry MakeOptionEntry(CLI::Option const& option);
+
 /// The options of limn or of a verb, in the order of its help.
 std::vector<OptionEntry> ListOptions(CLI::App const& app);
 

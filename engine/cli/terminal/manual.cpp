@@ -39,7 +39,8 @@ constexpr char const* kEnvironment = R"(.SH ENVIRONMENT
 .B LIMN_THREADS, OPENIMAGEIO_THREADS, CUE_THREADS
 How many threads to use where
 .B \-\-threads
-is not given; the first that is set counts. Results do not depend on it.
+is not given; the first that is set counts. The first is refused if it is no number from 1 to 1024,
+the others are passed over then. Results do not depend on it.
 .TP
 .B LIMN_SIMD
 .BR sse2 " or " avx2 :

@@ -42,7 +42,15 @@ TEST(BakeTiles, AreThoseThatFacesReachOfThoseAskedFor) {
     auto const model = MakeQuads({{0, 0}, {1.5, 0.5}});
     EXPECT_EQ(FindTiles(model, {}, true), (Numbers{1001, 1002, 1003, 1012, 1013}));
     EXPECT_EQ(FindTiles(model, {1012, 1003, 1050}, true), (Numbers{1003, 1012}));
-    EXPECT_EQ(FindTiles(model, {1050}, true), Numbers{});
+}
+
+TEST(BakeTiles, WhereNoneOfThoseAskedForIsThereTheOnesThatAreAreListed) {
+    auto const model = MakeQuads({{0, 0}, {1.5, 0.5}});
+    for (bool hasToken : {true, false}) {
+        EXPECT_EQ(test::CodeOf([&] { FindTiles(model, {1050}, hasToken); }), ErrorCode::BadMesh);
+        std::string const refusal = test::RefusalOf([&] { FindTiles(model, {1050}, hasToken); });
+        EXPECT_TRUE(refusal.ends_with("there are: 1001, 1002, 1003, 1012, 1013")) << refusal;
+    }
 }
 
 TEST(BakeTiles, WithoutATokenOneTileIsBakedThatLosesNoFace) {

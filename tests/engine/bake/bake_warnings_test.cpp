@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/bake/bake.h"
+#include "engine/scene/uv_info.h"
 #include "support/listener.h"
 #include "support/meshes.h"
 #include "support/threads.h"
@@ -54,6 +55,20 @@ TEST(BakeWarnings, NothingIsSaidOfASoundMesh) {
         options.width = options.height = size;
         EXPECT_EQ(WarningsOf(test::LoadSpot(), options), Words{}) << size;
     }
+}
+
+// -------- faces that are lost
+
+TEST(BakeWarnings, FacesWithoutTextureAreaAreCountedAsInfoCountsThem) {
+    Scene scene = test::MakeTorus(6, 4);
+    EXPECT_EQ(WarningsOf(scene, MakeOptions({"position"})), Words{});
+    auto& values = scene.cage.fvarChannels.at(0).valueIndices;
+    for (size_t face : {5u, 9u, 20u})
+        std::fill_n(values.begin() + static_cast<long>(4 * face), 4, values[4 * face]);
+    EXPECT_EQ(engine::DescribeUVs(engine::Model::Build(scene)).zeroAreaFaces, 3u);
+    std::string const warning = WarningOf(scene, MakeOptions({"position"}));
+    EXPECT_TRUE(Contains(warning, "3 of 24 faces have no area in the texture")) << warning;
+    EXPECT_TRUE(Contains(warning, "first face 5")) << warning;
 }
 
 // -------- overlaps

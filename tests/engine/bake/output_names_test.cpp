@@ -63,7 +63,9 @@ TEST(ExpandPattern, AMapsAndAGroupsNameIsOnePartOfAPath) {
 
 TEST(CheckTokens, RefusesTokensThereAreNotAndListsThoseThereAre) {
     for (char const* token :
-         {"{tile}", "{MAP}", "{UDIM}", "<f>", "<Udim>", "%(udim)d", "{}", "{map }"}) {
+         {"{tile}",     "{MAP}", "{UDIM}", "<f>",    "<Udim>", "%(udim)d", "{}",      "{map }",
+          "####",       "##",    "@@@",    "%04d",   "%d",     "%s",       "%(map)s", "%(MAP)s",
+          "%(UDIM)04d", "$UDIM", "$F4",    "${map}", "[UDIM]", "[map]"}) {
         try {
             engine::CheckTokens(std::string("a.") + token + ".exr");
             ADD_FAILURE() << token;
@@ -76,8 +78,13 @@ TEST(CheckTokens, RefusesTokensThereAreNotAndListsThoseThereAre) {
     }
 }
 
-TEST(CheckTokens, LeavesSingleBracketsAlone) {
-    for (char const* pattern : {"a{b.exr", "a}b.exr", "a>b<c.exr", "50%.exr", "%(a.exr", "a.exr"})
+TEST(CheckTokens, LeavesNamesAloneThatOnlyLookLikeTokens) {
+    for (char const* pattern :
+         {"a{b.exr",   "a}b.exr",    "a>b<c.exr",   "50%.exr",     "%(a.exr",
+          "a.exr",     "take#2.exr", "me@home.exr", "50%done.exr", "50%sure.exr",
+          "5%0d1.exr", "%(a)b.exr",  "[old].exr",   "[udim.exr",   "C$/a.exr",
+          "$5.exr",    "a$",         "a%",          "%(",          "%(a)",
+          "#"})
         EXPECT_NO_THROW(engine::CheckTokens(pattern)) << pattern;
 }
 

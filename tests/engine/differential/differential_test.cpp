@@ -195,6 +195,9 @@ TEST(Differential, SizeAndTangentialShareAreWarnedOf) {
     auto const shrunk = RefineAndReport(test::MakeBipyramid(3), 2, {});
     ASSERT_EQ(shrunk.warnings.size(), 1u);
     EXPECT_NE(shrunk.warnings[0].find("times the size"), std::string::npos);
+    EXPECT_NE(shrunk.warnings[0].find("`spatialLevels` 1"), std::string::npos);
+    auto const edited = RefineAndReport(LoadBumpy(), 1, {.edit = {.factors = {{3, 1000.0}}}});
+    EXPECT_NE(edited.warnings.at(0).find("factors of the `edit`"), std::string::npos);
     auto sheared = LoadBumpy();
     for (size_t i = 0; i < sheared.positions.size(); i += 3) sheared.positions[i] *= 40.0;
     auto const other = RefineAndReport(sheared, 2, {.dirMagLevels = 1});

@@ -86,6 +86,25 @@ TEST(Bands, AreSharpenedInOrder) {
     }
 }
 
+std::vector<std::string> WarningsOfSharpening(int steps) {
+    test::Listener listener;
+    engine::Job job(listener.MakeHost());
+    engine::Sharpen(engine::Model::Build(test::MakeNoisyScenes()[0]), {.steps = steps}, job);
+    return listener.warnings;
+}
+
+// Each step multiplies by up to 4, so that 1 stays below 10, and 2000 leave double.
+TEST(Bands, SharpeningThatOutgrowsTheMeshIsWarnedOfOnce) {
+    EXPECT_TRUE(WarningsOfSharpening(1).empty());
+    auto const warnings = WarningsOfSharpening(30);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("of 30 steps the mesh reaches more than 10 times"),
+              std::string::npos)
+        << warnings[0];
+    EXPECT_NE(warnings[0].find("fewer `steps`"), std::string::npos) << warnings[0];
+    EXPECT_EQ(test::CodeOf([] { WarningsOfSharpening(2000); }), ErrorCode::TooLarge);
+}
+
 TEST(Bands, FiltersStopWhereTheirHostWants) {
     auto const model = engine::Model::Build(test::MakeTorus(9, 7));
     using engine::Job;

@@ -66,6 +66,29 @@ TEST(Fit, TheLimitPassesThroughTheVertices) {
     }
 }
 
+// Of an odd prism A is regular, but only just; what alternates round it is multiplied.
+TEST(Fit, AControlMeshThatOutgrowsItsDataIsWarnedOf) {
+    engine::Scene scene = test::MakePrism(101);
+    auto const warnings = [&](double alpha) {
+        test::Listener listener;
+        engine::Job job(listener.MakeHost());
+        EXPECT_TRUE(
+            engine::FitToLimit(engine::Model::Build(scene), {.alpha = alpha}, job).HasConverged());
+        return listener.warnings;
+    };
+    EXPECT_TRUE(warnings(0.0).empty());
+    for (size_t i = 0; i < scene.positions.size(); ++i) {
+        size_t const vertex = i / 3;  // even ones below, each with the next one above
+        bool const isOdd = (vertex / 2 + vertex % 2) % 2 == 1;
+        if (i % 3 < 2) scene.positions[i] *= isOdd ? 0.7 : 1.3;
+    }
+    auto const grown = warnings(0.0);
+    ASSERT_EQ(grown.size(), 1u);
+    EXPECT_NE(grown[0].find("times as far as the vertices"), std::string::npos) << grown[0];
+    EXPECT_NE(grown[0].find("`alpha` 0.5"), std::string::npos) << grown[0];
+    EXPECT_TRUE(warnings(0.5).empty());
+}
+
 // The whole miss belongs to the certificate: the solver's, and that of rounding to what the file
 // holds, which may be neither the doubles nor the floats.
 TEST(Fit, TheCertificateIsOfTheFile) {

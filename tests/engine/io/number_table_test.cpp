@@ -33,7 +33,7 @@ private:
 };
 
 TEST_F(Tables, ReadTheirColumnsInAnyOrder) {
-    NumberTable const table = Read("note, t ,face,s\nx,0.25,0,0.5\n\ny,0,7,1,more\n");
+    NumberTable const table = Read("note, t ,face,s\nx,0.25,0,0.5\n\ny,0,7,1\n");
     EXPECT_EQ(table.values, kValues);
     EXPECT_EQ(table.lines, (std::vector<size_t>{2, 4}));
 }
@@ -68,7 +68,22 @@ TEST_F(Tables, RefuseWhatIsNoNumberByLineAndColumn) {
     EXPECT_EQ(RefusalOfText("face,s,t\n0,half,0\n"), ":2: 'half' in column s is no number");
     EXPECT_EQ(RefusalOfText("face,s,t\n0,0\n"), ":2: '' in column t is no number");
     EXPECT_EQ(RefusalOfText("face,s,t\n0,nan,0\n"), ":2: 'nan' in column s is no number");
-    EXPECT_EQ(RefusalOfText("face,s,t\n0,1e999,0\n"), ":2: '1e999' in column s is no number");
+    EXPECT_EQ(RefusalOfText("face,s,t\n0,1e999,0\n"),
+              ":2: '1e999' in column s is too large a number; at most 1.79769e+308 in magnitude is "
+              "possible");
+    EXPECT_EQ(RefusalOfText("face,s,t\n0,0,1e-999\n"),
+              ":2: '1e-999' in column t is too small a number; 0, or at least 4.94066e-324 in "
+              "magnitude, is possible");
+}
+
+TEST_F(Tables, RefuseRowsWithMoreThanTheHeaderNames) {
+    EXPECT_EQ(RefusalOfText("face,s,t\n0,0.5,0.25\n7,0,5,0\n"),
+              ":3: the row has 4 fields; the header names 3 columns");
+    EXPECT_EQ(RefusalOfText("note,face,s,t\na,0,0,1\nb,0,0,1,,more\n"),
+              ":3: the row has 6 fields; the header names 4 columns");
+    EXPECT_EQ(Read("face,s,t\n0,0.5,0.25,\n7,1,0 , ,\t\n").values, kValues) << "nothing is lost";
+    EXPECT_EQ(RefusalOfText("face,s,t\n0,\"0.5\"1,0\n"),
+              ":2: text stands behind the quote that ends a field");
 }
 
 TEST_F(Tables, RefuseDecimalCommas) {
@@ -79,6 +94,9 @@ TEST_F(Tables, RefuseDecimalCommas) {
 TEST_F(Tables, RefuseOtherHeadersAndFiles) {
     EXPECT_EQ(RefusalOfText("face,u,v\n0,0,0\n"), ":1: the header needs the columns face,s,t");
     EXPECT_EQ(RefusalOfText("Face,FACE,s,t\n0,0,0,0\n"), ":1: the header has column 'face' twice");
+    EXPECT_EQ(RefusalOfText("face,s,t,s\n0,0,0,1\n"), ":1: the header has column 's' twice");
+    EXPECT_EQ(Read("x,face,x,s,t\n9,0,8,0.5,0.25\n9,7,8,1,0\n").values, kValues)
+        << "what is skipped may have any name";
     EXPECT_EQ(RefusalOfText("\n\n"), ": the file is empty; a header face,s,t is needed");
     EXPECT_EQ(RefusalOfText("\"face,s,t\n"), ":1: a quoted field does not end on its line");
     EXPECT_EQ(RefusalOfText("PK\x03\x04"),

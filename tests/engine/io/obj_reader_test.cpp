@@ -308,6 +308,15 @@ TEST(ObjReader, CornerTagNamesOneVertexOrMore) {
     EXPECT_EQ(scene.cage.cornerSharpness, (std::vector<float>{2, 4, 4, 5, 6}));
 }
 
+TEST(ObjReader, ValuesThatATagDoesNotTakeAreWarnedOf) {
+    Scene const scene = Parse(kQuad + "t crease 2/1/0 0 1 2.5 7 # 8\nt hole 1/0/0 0 1\n");
+    EXPECT_EQ(scene.cage.creaseVertexPairs, (std::vector<Index>{0, 1}));
+    EXPECT_EQ(scene.warnings,
+              (std::vector<std::string>{"mesh.obj:6: 2 lines ('crease', 'hole') of tags with more "
+                                        "values than they take, which are not read"}));
+    EXPECT_TRUE(Parse(kQuad + "t crease 2/1/0 0 1 2.5 # 7\n").warnings.empty());
+}
+
 TEST(ObjReader, HoleTagNamesFacesByZeroBasedIndex) {
     Scene const scene = Parse(kQuad + "f 1 2 3\nf 1 3 4\nt hole 1/0/0 2\nt hole 2/0/0 0 1\n");
     EXPECT_EQ(scene.cage.holes, (std::vector<Index>{2, 0, 1}));

@@ -42,6 +42,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "v 0 0 1e999\n",
                 "mesh.obj:1: ",
                 {"z is '1e999'", "at most 1e+30 in magnitude"}},
+        Refusal{"TooSmall", "v 0 -1e-400 0\n", "mesh.obj:1: ", {"y is '-1e-400', too small"}},
         Refusal{"Nan", "v nan 0 0\n", "mesh.obj:1: ", {"x is 'nan'", "finite number is needed"}},
         Refusal{"NegativeNan", "v 0 -nan 0\n", "mesh.obj:1: ", {"y is '-nan'"}},
         Refusal{"WindowsNan", "v 0 0 1.#IND\n", "mesh.obj:1: ", {"z is '1.#IND'"}},

@@ -116,6 +116,22 @@ TEST(PlyReader, CrlfAndMissingLastLineEndChangeNothing) {
     }
 }
 
+TEST(PlyReader, WhatFollowsTheLastRowIsWarnedOfUnlessItIsWhiteSpace) {
+    EXPECT_EQ(Parse(kTriangle + "3 2 1 0\n\n3 0 2 1\n").warnings,
+              (std::vector<std::string>{
+                  "mesh.ply: 2 lines behind the last row that the header counts, not read"}));
+    EXPECT_TRUE(Parse(kTriangle + " \n\t\n").warnings.empty());
+    for (bool isBig : {false, true}) {
+        std::string const bytes = MakeTyped(isBig);
+        EXPECT_EQ(Parse(bytes + "\n\1\2\n").warnings,
+                  (std::vector<std::string>{
+                      "mesh.ply: 3 bytes behind the last row that the header counts, not read"}));
+        EXPECT_EQ(Parse(bytes + '\0').warnings.size(), 1u);
+        EXPECT_TRUE(Parse(bytes + " \r\n").warnings.empty());
+        EXPECT_TRUE(Parse(bytes).warnings.empty());
+    }
+}
+
 TEST(PlyReader, AnyLineEndChangesNothing) {
     for (std::string const end : {"\r", "\n\r"}) {
         Scene const other = Parse(std::regex_replace(kTriangle, std::regex("\n"), end));

@@ -32,6 +32,16 @@ TEST(Extent, IsTheBoxRoundThePoints) {
     EXPECT_EQ(FindExtent({}).GetDiagonal(), 0.0);
 }
 
+// The middle of the box is (2, -5, 0), and it reaches 4 from there at most.
+TEST(Extent, GrowthIsHowMuchFartherThanTheBoxThePointsReach) {
+    Extent const box{{-2, -8, 0}, {6, -2, 0}};
+    EXPECT_EQ(engine::FindGrowth(box, box), 1.0);
+    EXPECT_EQ(engine::FindGrowth(box, {{0, -5, 0}, {2, -5, 0}}), 0.5);
+    EXPECT_EQ(engine::FindGrowth(box, {{-2, -8, 0}, {6, -2, 40}}), 10.0);
+    EXPECT_EQ(engine::FindGrowth(box, {{-2, -25, 0}, {6, -2, 1}}), 5.0);
+    EXPECT_EQ(engine::FindGrowth(FindExtent({}), box), 1.0);
+}
+
 TEST(Extent, AStepLeadsToTheNextFloat) {
     float const infinity = std::numeric_limits<float>::infinity();
     for (float x : {1e-45f, 1e-40f, 0.1f, 1.0f, 1.5f, 2.0f, 1003.0f, 5411932.5f, 3e38f})

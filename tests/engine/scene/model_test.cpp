@@ -3,10 +3,13 @@
 
 #include <limits>
 #include <ostream>
+#include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "engine/scene/content_hash.h"
+#include "eval/surface/limit_surface.h"
 #include "support/errors.h"
 #include "support/files.h"
 #include "support/meshes.h"
@@ -47,6 +50,33 @@ TEST(Model, MakesTheSceneItWasBuiltFrom) {
     EXPECT_EQ(back.uvs, scene.uvs);
     EXPECT_EQ(back.primvars.at(0).values, scene.primvars[0].values);
     EXPECT_EQ(back.groups[0].faceGroup, scene.groups[0].faceGroup);
+}
+
+TEST(Model, MakesItsLimitSurfacesOnceForAllCopies) {
+    Model const model = Model::Build(MakeNamedTorus());
+    std::vector<eval::LimitSurface const*> limits(8), textures(8);
+    std::vector<std::thread> threads;
+    for (size_t i = 0; i < limits.size(); ++i) {
+        threads.emplace_back([&, i, copy = model] {
+            limits[i] = &copy.GetLimitSurface();
+            textures[i] = &copy.GetTextureSurface();
+        });
+    }
+    for (std::thread& thread : threads) thread.join();
+    Model const moved = model.WithPoints(std::vector<double>(model.GetPositions().size(), 1.0));
+    for (size_t i = 0; i < limits.size(); ++i) {
+        EXPECT_EQ(limits[i], &moved.GetLimitSurface());
+        EXPECT_EQ(textures[i], &moved.GetTextureSurface());
+    }
+    EXPECT_EQ(limits[0]->GetFVarChannel(), -1);
+    EXPECT_EQ(textures[0]->GetFVarChannel(), 0);
+}
+
+TEST(Model, WithoutTextureCoordinatesHasNoLimitOfThem) {
+    Model const model = Model::Build(test::MakeCube());
+    ASSERT_FALSE(model.HasUVs());
+    for (int i = 0; i < 2; ++i)
+        EXPECT_EQ(test::CodeOf([&] { model.GetTextureSurface(); }), ErrorCode::BadOption);
 }
 
 TEST(Model, DoesNotChangeWithTheSceneItWasBuiltFrom) {

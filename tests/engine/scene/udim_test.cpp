@@ -2,6 +2,8 @@
 #include "engine/scene/udim.h"
 
 #include <limits>
+#include <numeric>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -33,6 +35,13 @@ TEST(Udim, PlacesBeyondTheRangeHaveNone) {
     EXPECT_FALSE(FindUdimTile(0.5, -0.1));
     EXPECT_FALSE(FindUdimTile(0.5, 1e30));
     EXPECT_FALSE(FindUdimTile(nan, 0.5));
+}
+
+TEST(Udim, AListOfTilesIsALineAtMost) {
+    EXPECT_EQ(engine::ListTiles({1001, 1012}), "1001, 1012");
+    std::vector<int> tiles(23);
+    std::iota(tiles.begin(), tiles.end(), 1001);
+    EXPECT_TRUE(engine::ListTiles(tiles).ends_with(", 1020 and 3 more"));
 }
 
 TEST(Udim, EveryTokenIsReplacedWhereverItStands) {

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/cli/options/example_values.h"
+
+#include <algorithm>
+#include <span>
+
+namespace limn::cli {
+
+namespace {
+
+struct Example {
+    std::string_view name, value;
+};
+
+constexpr Example kOutputs[] = {{"bake", "out/{map}.exr"},
+                                {"bands", "out/spot"},
+                                {"eval", "out/limit.csv"},
+                                {"measure", "out/spot"},
+                                {"morph", "out/spot"}};
+
+constexpr Example kValues[] = {{"--against", "sculpted.obj"},
+                               {"--at", "places.csv"},
+                               {"--count", "4"},
+                               {"--edges", "edges.csv"},
+                               {"--edit", "edit.json"},
+                               {"--encode", "0.5,0.5"},
+                               {"--field", "field.edges.csv"},
+                               {"--frames", "walk.{frame}.obj"},
+                               {"--groups", "skin,eyes"},
+                               {"--handle", "0"},
+                               {"--harmonic", "1,0"},
+                               {"--iterations", "10"},
+                               {"--match", "vectors.csv"},
+                               {"--noise-frequency", "8"},
+                               {"--noise-ramp", "'#203040,#ffffff'"},
+                               {"--origin", "auto"},
+                               {"--output", "out/spot.obj"},
+                               {"--picture", "out/spot.png"},
+                               {"--preview-range", "p1"},
+                               {"--report", "run.json"},
+                               {"--rest", "rest.obj"},
+                               {"--seam-bound", "0.01"},
+                               {"--sink", "12"},
+                               {"--size", "2048"},
+                               {"--source", "7"},
+                               {"--sweeps", "10"},
+                               {"--threads", "4"},
+                               {"--tiles", "1001,1003-1005"},
+                               {"--tolerance", "1e-6"},
+                               {"--vortex", "3"},
+                               {"--weld", "0"},
+                               {"--width", "0.1"},
+                               {"--width-edges", "edges.csv"},
+                               {"--width-factor", "0.12"},
+                               {"--width-map", "widths.csv"},
+                               {"--width-scale", "0.12"},
+                               {"--width-texture", "widths.png"},
+                               {"FROM", "neutral.obj"},
+                               {"MESH", "spot.obj"},
+                               {"TO", "smile.obj"}};
+
+std::string_view Find(std::span<Example const> examples, std::string_view name) {
+    auto const found = std::ranges::find(examples, name, &Example::name);
+    return found == examples.end() ? std::string_view() : found->value;
+}
+
+}  // namespace
+
+std::string FindExample(OptionEntry const& option, std::string_view verb,
+                        std::string const& byDefault) {
+    std::string_view const name = option.IsPositional() ? option.placeholder : option.longFlag;
+    std::string_view value = name == "--output" ? Find(kOutputs, verb) : std::string_view();
+    if (value.empty()) value = Find(kValues, name);
+    if (!value.empty()) return std::string(value);
+    if (!option.words.empty()) return option.words[0];
+    bool const isList = byDefault.starts_with('[') && byDefault.ends_with(']');
+    return isList ? byDefault.substr(1, byDefault.size() - 2) : byDefault;
+}
+
+}  // namespace limn::cli
