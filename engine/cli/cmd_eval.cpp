@@ -3,9 +3,9 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
-#include "engine/cli/option_rules.h"
 #include "engine/cli/options/evaluator_option.h"
 #include "engine/cli/options/far_limit_option.h"
+#include "engine/cli/options/option_rules.h"
 #include "engine/evaluate/evaluate.h"
 #include "engine/evaluate/frames.h"
 #include "engine/evaluate/place_table.h"
@@ -65,7 +65,7 @@ void CheckOptions(EvalArguments const& a, CLI::App const& verb) {
 int Run(EvalArguments const& a, CLI::App const& verb, Context& context) {
     CheckOptions(a, verb);
     CommonOptions const& common = context.GetCommon();
-    auto const evaluator = MakeEvaluator(a.far.evaluator, common);
+    auto const evaluator = MakeEvaluator(a.far.evaluator, common.precision);
     context.KeepStdoutForData(a.output.empty());
     context.KeepApart({{"MESH", a.mesh}, {"--at", a.places}}, {{"-o", a.output}});
     auto const model = context.Load(a.mesh);

@@ -5,9 +5,9 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
-#include "engine/cli/option_rules.h"
 #include "engine/cli/options/far_limit_option.h"
 #include "engine/cli/options/number_option.h"
+#include "engine/cli/options/option_rules.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/fit/fit.h"
 #include "engine/io/matrix_market.h"

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "engine/cli/filter_options.h"
-#include "engine/cli/option_rules.h"
+#include "engine/cli/options/option_rules.h"
 #include "engine/fit/morph.h"
 #include "engine/io/mesh_writer.h"
 

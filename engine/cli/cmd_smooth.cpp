@@ -7,8 +7,8 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
-#include "engine/cli/option_rules.h"
 #include "engine/cli/options/number_option.h"
+#include "engine/cli/options/option_rules.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/images/png.h"
 #include "engine/io/file.h"

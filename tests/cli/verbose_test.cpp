@@ -121,7 +121,7 @@ TEST_F(Cli, VerboseNamesThePhaseThatFailedBeforeTheError) {
 }
 
 TEST_F(Cli, QuietAndVerboseContradictEachOther) {
-    ExpectError(Limn({"info", Shape("catmark_cube"), "--quiet", "--verbose"}), 2, "excludes");
+    ExpectError(Limn({"info", Shape("catmark_cube"), "--quiet", "--verbose"}), 2, "exclude each other");
 }
 
 }  // namespace

@@ -18,9 +18,9 @@ void AddEvaluatorOption(CLI::App& verb, std::optional<eval::EvaluatorKind>& kind
 }
 
 std::unique_ptr<eval::TableEvaluator> MakeEvaluator(std::optional<eval::EvaluatorKind> kind,
-                                                    CommonOptions const& common) {
+                                                    std::optional<Precision> precision) {
     if (!kind) return nullptr;
-    if (common.precision == Precision::Double) {
+    if (precision == Precision::Double) {
         throw Error(ErrorCode::BadOption,
                     fmt::format("--evaluator {} works in float; --precision double excludes it",
                                 eval::GetName(*kind)));

@@ -7,8 +7,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "engine/cli/cli.h"
 #include "eval/stencils/table_evaluator.h"
+#include "far_ext/types.h"
 
 namespace limn::cli {
 
@@ -18,9 +18,10 @@ void AddEvaluatorOption(CLI::App& verb, std::optional<eval::EvaluatorKind>& kind
 
 /// The evaluator of a run; none where none was asked for.
 ///
-/// \throws Error  BadOption: with --precision double
+/// \param precision  of the files, if one was asked for
+/// \throws Error     BadOption: double
 std::unique_ptr<eval::TableEvaluator> MakeEvaluator(std::optional<eval::EvaluatorKind> kind,
-                                                    CommonOptions const& common);
+                                                    std::optional<Precision> precision);
 
 /// The report's `evaluator`: what was applied, and how often.
 nlohmann::json DescribeEvaluator(eval::TableEvaluator const& evaluator);

@@ -55,6 +55,8 @@ constexpr Example kValues[] = {{"--against", "sculpted.obj"},
                                {"--width-map", "widths.csv"},
                                {"--width-scale", "0.12"},
                                {"--width-texture", "widths.png"},
+                               {"--write-matrix", "A.mtx"},
+                               {"--write-stencils", "S1.mtx,S2.mtx"},
                                {"FROM", "neutral.obj"},
                                {"MESH", "spot.obj"},
                                {"TO", "smile.obj"}};

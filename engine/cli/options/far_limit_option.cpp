@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "engine/cli/option_rules.h"
 #include "engine/cli/options/number_option.h"
+#include "engine/cli/options/option_rules.h"
 #include "engine/cli/options/word_option.h"
 
 namespace limn::cli {

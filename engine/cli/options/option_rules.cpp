@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/cli/option_rules.h"
+#include "engine/cli/options/option_rules.h"
 
 #include <fmt/format.h>
 
