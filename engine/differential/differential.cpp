@@ -223,6 +223,7 @@ DifferentialResult DifferentialRefinement::Run() {
 }
 
 void CheckOptions(Model const& model, DifferentialOptions const& options) {
+    far_ext::CheckTension(options.rule);
     if (options.spatialLevels + options.dirMagLevels > options.levels) {
         throw Error(
             ErrorCode::BadOption,
@@ -279,6 +280,7 @@ double PolariseCurvature(double x) {
 DifferentialResult RefineDifferentially(Model const& model, DifferentialOptions const& options,
                                         Job& job) {
     CheckOptions(model, options);
+    WarnOfRoughVertices(model, options.rule, job);
     DifferentialResult result = DifferentialRefinement(model, options, job).Run();
     Warn(model, options, result.report, job);
     return result;

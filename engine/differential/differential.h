@@ -39,7 +39,7 @@ enum class DifferentialSolver { Multigrid, Cholesky };
 
 struct DifferentialOptions {
     int levels = 1;  ///< 0 to 10, those in space included
-    far_ext::SubdivisionRule rule = far_ext::SubdivisionRule::Scheme;
+    far_ext::TunedRule rule{};
     Laplacian laplacian = Laplacian::Combinatorial;
     int dirMagLevels = 0;   ///< levels done by direction and magnitude
     int spatialLevels = 0;  ///< levels done in space before
