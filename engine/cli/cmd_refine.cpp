@@ -32,21 +32,29 @@ std::vector<char const*> const kDifferentialOptions{
 struct RefineArguments {
     std::string mesh, output, editPath;
     std::optional<NamedRule> rule;
-    std::optional<double> tolerance;
+    std::optional<double> tolerance, tension;
     int levels = 1;
     bool isDifferential = false, toLimit = false, keepsResult = false, isCurve = false;
     engine::DifferentialOptions options;
 };
 
-void RequireTriangles(engine::Model const& model, NamedRule const& rule) {
+/// Refuses a mesh with other faces than the rule can have.
+void RequireSize(engine::Model const& model, NamedRule const& rule, int size,
+                 char const* whatItTakes) {
     auto const& sizes = model.GetCage().faceSizes;
-    auto const polygon = std::ranges::find_if(sizes, [](int size) { return size != 3; });
-    if (polygon == sizes.end()) return;
-    throw Error(
-        ErrorCode::BadMesh,
-        fmt::format("{}: {} has {} corners; --rule {} takes triangles only, --rule catmark all",
-                    model.GetPath(), model.NameFace(static_cast<Index>(polygon - sizes.begin())),
-                    *polygon, kRuleWords.GetWord(rule)));
+    auto const other = std::ranges::find_if(sizes, [size](int found) { return found != size; });
+    if (other == sizes.end()) return;
+    throw Error(ErrorCode::BadMesh,
+                fmt::format("{}: {} has {} corners; --rule {} takes {}", model.GetPath(),
+                            model.NameFace(static_cast<Index>(other - sizes.begin())), *other,
+                            kRuleWords.GetWord(rule), whatItTakes));
+}
+
+void RequireFaces(engine::Model const& model, NamedRule const& rule) {
+    if (rule.scheme == Sdc::SCHEME_LOOP)
+        RequireSize(model, rule, 3, "triangles only, --rule catmark all");
+    if (rule.rule == SubdivisionRule::Kobbelt)
+        RequireSize(model, rule, 4, "quads only; make them by one level of --rule catmark first");
 }
 
 /// The mesh under the scheme that the rule asks for, where one is named.
@@ -58,12 +66,12 @@ engine::Model ApplyRule(RefineArguments const& a, CommonOptions const& common,
                     fmt::format("--rule {} contradicts --scheme {}", kRuleWords.GetWord(*a.rule),
                                 engine::kSchemeWords.GetWord(*common.scheme)));
     }
-    if (a.rule->scheme == Sdc::SCHEME_LOOP) RequireTriangles(model, *a.rule);
+    RequireFaces(model, *a.rule);
     return WithScheme(model, a.rule->scheme);
 }
 
-SubdivisionRule GetRule(RefineArguments const& a) {
-    return a.rule ? a.rule->rule : SubdivisionRule::Scheme;
+far_ext::TunedRule GetRule(RefineArguments const& a) {
+    return {a.rule ? a.rule->rule : SubdivisionRule::Scheme, a.tension};
 }
 
 bool IsFit(engine::DifferentialOptions const& options) {
@@ -139,13 +147,14 @@ void CheckSpace(RefineArguments const& a, CLI::App const& verb) {
     }
 }
 
-/// Polylines by the rule that boundaries follow: cubic B-spline, or four-point for butterfly.
+/// Polylines by the rule that boundaries follow: cubic B-spline, or four-point where the rule
+/// interpolates.
 int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& context) {
     constexpr char const* kWhy = "means nothing with --curve; leave it out";
     RefuseEach(verb, kDifferentialOptions, kWhy);
-    RefuseEach(verb, {"--limit", "--weld"}, kWhy);
-    auto const rule = GetRule(a) == SubdivisionRule::Butterfly ? eval::CurveRule::FourPoint
-                                                               : eval::CurveRule::CubicBSpline;
+    RefuseEach(verb, {"--limit", "--weld", "--tension"}, kWhy);
+    auto const rule =
+        GetRule(a).IsInterpolating() ? eval::CurveRule::FourPoint : eval::CurveRule::CubicBSpline;
     context.GetJob().Start("reading " + a.mesh);
     auto const [curves, sha256] = engine::ReadPolylines(a.mesh);
     auto const start = std::chrono::steady_clock::now();
@@ -171,6 +180,7 @@ int RunRefine(RefineArguments const& a, CLI::App const& verb, Context& context) 
     context.KeepApart({{"MESH", a.mesh}, {"--edit", a.editPath}}, {{"-o", a.output}});
     if (a.isCurve) return RefineCurves(a, verb, context);
     CheckSpace(a, verb);
+    far_ext::CheckTension(GetRule(a));
     auto const model = ApplyRule(a, context.GetCommon(), context.Load(a.mesh));
     context.GetReport()["inputs"].back()["subdivision"] =
         engine::DescribeSubdivision(model.GetCage());
@@ -202,11 +212,17 @@ Verb AddRefine(CLI::App& app) {
     AddWordOption(*verb, "--space", a->isDifferential, kIsDifferentialWords,
                   "spatial (default): rules on positions; differential: on mean-curvature normals");
     AddWordOption(*verb, "--rule", a->rule, kRuleWords,
-                  "loop, catmark or butterfly (default: the scheme's)");
+                  "default: the scheme's; loop and catmark approximate, the others keep vertices: "
+                  "butterfly (modified), butterfly-original and kobbelt (quads) with a --tension, "
+                  "interpolating-loop and interpolating-catmark deduced from those two");
+    AddNumberOption(*verb, "--tension", a->tension,
+                    "of butterfly-original from 0 to 0.125 (default 0.0625), of kobbelt from 0 to "
+                    "2 (default 1)",
+                    {0.0, 2.0});
     verb->add_flag("--limit", a->toLimit, "move the result's vertices to the limit surface");
-    verb->add_flag(
-        "--curve", a->isCurve,
-        "MESH holds polylines (OBJ 'l'); their rule is cubic B-spline, for butterfly four-point");
+    verb->add_flag("--curve", a->isCurve,
+                   "MESH holds polylines (OBJ 'l'); their rule is cubic B-spline, or four-point "
+                   "where --rule keeps vertices");
     auto const differential = [](CLI::Option* option) {
         return option->group("Options of --space differential");
     };
