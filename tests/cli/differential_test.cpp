@@ -188,5 +188,40 @@ TEST_F(CliDifferential, MeasureTellsAllAndWritesWhatIsAskedFor) {
     ExpectError(Limn({"measure", folder / "none.obj"}), 5, "none.obj");
 }
 
+/// limn measure -o NAME with more words; which of both pictures it has written.
+class CliMeasurePicture : public CliDifferential {
+protected:
+    std::vector<std::string> ListPictures(std::string const& name, Words const& more) const {
+        auto const outcome =
+            Limn(Words{"measure", "--surface", "mesh", "-o", folder / name} + more);
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        std::vector<std::string> written;
+        for (std::string const map : {"mean", "gaussian"}) {
+            if (std::filesystem::exists(folder / name + "." + map + ".png")) written.push_back(map);
+        }
+        return written;
+    }
+};
+
+TEST_F(CliMeasurePicture, IsOfTheCurvatureThatIsNamed) {
+    std::string const mesh = Mesh("icosa");
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(ListPictures("a", {mesh, "--picture"}), Names{"mean"});
+    EXPECT_EQ(ListPictures("b", {mesh, "--picture", "mean"}), Names{"mean"});
+    EXPECT_EQ(ListPictures("c", {mesh, "--picture", "gaussian"}), Names{"gaussian"});
+    EXPECT_EQ(ListPictures("d", {"--picture=gaussian", mesh}), Names{"gaussian"});
+    EXPECT_EQ(ListPictures("e", {"--picture", mesh}), Names{"mean"});  // no word of the flag's
+    EXPECT_EQ(ListPictures("f", {mesh}), Names{});
+    EXPECT_EQ(test::ReadText(folder / "a.mean.png"), test::ReadText(folder / "b.mean.png"));
+    EXPECT_NE(test::ReadText(folder / "a.mean.png"), test::ReadText(folder / "c.gaussian.png"));
+}
+
+TEST_F(CliMeasurePicture, OtherWordsAreStatus2) {
+    ExpectError(Limn({"measure", Mesh("icosa"), "-o", folder / "a", "--picture=gauss"}), 2,
+                "--picture: 'gauss' is not one of mean, gaussian");
+    ExpectError(Limn({"measure", Mesh("icosa"), "-o", folder / "a", "--picture", "gauss"}), 2,
+                "'gauss' is one argument too many");
+}
+
 }  // namespace
 }  // namespace limn
