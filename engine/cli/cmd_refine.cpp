@@ -95,6 +95,18 @@ engine::DifferentialOptions MakeOptions(RefineArguments const& a, CommonOptions 
     return options;
 }
 
+nlohmann::json ToJson(std::vector<engine::EditOutcome> const& edits) {
+    auto list = nlohmann::json::array();
+    for (auto const& [target, reached] : edits) {
+        bool const isMean = std::holds_alternative<double>(target.asked);
+        auto& entry = list.emplace_back(nlohmann::json{
+            {"vertex", target.vertex}, {"kind", isMean ? "mean" : "normal"}, {"reached", nullptr}});
+        std::visit([&](auto const& asked) { entry["asked"] = asked; }, target.asked);
+        if (reached) entry["reached"] = *reached;
+    }
+    return list;
+}
+
 /// Why the tolerance was missed.
 std::string Explain(engine::DifferentialReport const& found, bool isFit, double tolerance) {
     if (!isFit) {
@@ -118,7 +130,10 @@ engine::DifferentialResult RefineDifferentially(RefineArguments const& a,
     auto const report = context.GetReport();
     report["unknowns"] = found.unknowns;
     report["iterations"] = found.iterations;
-    report["solve_seconds"] = found.solveSeconds;
+    report["solve_seconds"] = found.seconds.reconstruction;
+    report["stages"] = {{"coordinates", found.seconds.coordinates},
+                        {"subdivision", found.seconds.subdivision},
+                        {"reconstruction", found.seconds.reconstruction}};
     report["residual"] = found.residual;
     report["compatibility_defect"] = found.compatibilityDefect;
     report["residual_rounding"] = found.rounding;
@@ -131,6 +146,7 @@ engine::DifferentialResult RefineDifferentially(RefineArguments const& a,
     report["size_ratio"] = found.sizeRatio;
     report["thin_plate_energy"] = found.energy.mean;
     report["thin_plate_energy_area"] = found.energy.integral;
+    if (!a.editPath.empty()) report["edits"] = ToJson(found.edits);
     if (!found.converged) {
         context.GetJob().Warn(Explain(found, IsFit(options), GetTolerance(options)) +
                               (a.keepsResult ? "" : "; nothing is written without --keep-result"));
@@ -240,9 +256,11 @@ Verb AddRefine(CLI::App& app) {
                                "multigrid (default) or cholesky"));
     differential(verb->add_option(
         "--edit", a->editPath,
-        "JSON, all keys optional, vertices 0-based: {\"curvature\": [{\"vertex\": 3, "
-        "\"factor\": 1.5}], \"rotate\": [{\"vertex\": 7, \"axis\": [0,0,1], "
-        "\"degrees\": 20}], \"filter\": \"polarise\"}"));
+        "JSON, all keys optional, vertices 0-based: {\"set_curvature\": [{\"vertex\": 3, "
+        "\"mean\": 0.2}], \"curvature\": [{\"vertex\": 4, \"factor\": 1.5}], \"set_normal\": "
+        "[{\"vertex\": 5, \"normal\": [0,1,1]}], \"rotate\": [{\"vertex\": 7, \"axis\": [0,0,1], "
+        "\"degrees\": 20}], \"filter\": \"polarise\" or {\"points\": [[0,0], [0.5,0.2], [1,1]]}}; "
+        "applied in this order"));
     differential(AddNumberOption(
         *verb, "--tolerance", a->tolerance,
         "of what remains of the differential coordinates, over their length (default "

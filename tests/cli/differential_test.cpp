@@ -131,8 +131,32 @@ TEST_F(CliDifferential, UnmetCoordinatesAreStatus4) {
 TEST_F(CliDifferential, TheEditFileStandsInTheHelp) {
     Outcome const help = Limn({"refine", "--help"});
     for (char const* key : {"\"curvature\"", "\"factor\"", "\"rotate\"", "\"axis\"", "\"degrees\"",
-                            "\"filter\"", "\"polarise\""})
+                            "\"filter\"", "\"polarise\"", "\"set_curvature\"", "\"mean\"",
+                            "\"set_normal\"", "\"normal\"", "\"points\""})
         EXPECT_TRUE(Contains(help.out, key)) << key;
+}
+
+// A vertex a list names is there once per kind, with what was asked for and what came of it.
+TEST_F(CliDifferential, EditsAreReportedAsMeasured) {
+    std::string const edit = folder.Write("edit.json", R"({"set_normal": [{"vertex": 2,
+        "normal": [0, 3, 4]}], "curvature": [{"vertex": 5, "factor": 2}, {"vertex": 5, "factor": 0.5}],
+        "set_curvature": [{"vertex": 4, "mean": 1.5}]})");
+    auto const outcome =
+        Refine(Mesh("icosa"), {"--space", "differential", "--rule", "loop", "--edit", edit});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    json const edits = Report()["edits"];
+    ASSERT_EQ(edits.size(), 3u);
+    EXPECT_EQ(edits[0]["vertex"], 4);
+    EXPECT_EQ(edits[0]["kind"], "mean");
+    EXPECT_EQ(edits[0]["asked"], 1.5);
+    EXPECT_GT(edits[0]["reached"], 0.1);
+    EXPECT_EQ(edits[1]["vertex"], 5);
+    EXPECT_EQ(edits[2]["kind"], "normal");
+    EXPECT_NEAR(edits[2]["asked"][2].get<double>(), 0.8, 1e-15);
+    EXPECT_TRUE(edits[2]["reached"].is_number());
+    for (char const* stage : {"coordinates", "subdivision", "reconstruction"})
+        EXPECT_GE(Report()["stages"][stage], 0.0) << stage;
+    EXPECT_EQ(Report()["stages"]["reconstruction"], Report()["solve_seconds"]);
 }
 
 TEST_F(CliDifferential, DeepEditsAreStatus3InOneShortLine) {

@@ -324,6 +324,11 @@ void RefineInDifferentialSpace(Model const& model, Choices& choices, Job& job) {
     if (choices.TakeOneIn(4))
         options.edit.rotations.push_back({choices.TakeInt(0, numVertices), {0, 0, 1}, 30.0});
     options.edit.isPolarised = choices.TakeOneIn(4);
+    if (choices.TakeOneIn(4))
+        options.edit.means.push_back({choices.TakeInt(0, numVertices), 9.0 * choices.TakeSigned()});
+    if (choices.TakeOneIn(4))
+        options.edit.normals.push_back({choices.TakeInt(0, numVertices), {0.3, 0, 1}});
+    if (choices.TakeOneIn(4)) options.edit.filterPoints = {{0.0, choices.TakeShare()}, {1.0, 1.0}};
     auto const result = engine::RefineDifferentially(model, options, job);
     RequireMesh(result.mesh);
 }
