@@ -51,7 +51,7 @@ SparseRows DeduceInterpolatingRows(Far::TopologyRefiner const& refiner, int leve
     InterpolatingRows rows(coarse, approximating);
     // OpenSubdiv's order: children of vertices, of faces where the scheme has them, of edges.
     for (Index vertex = 0; vertex < coarse.GetNumVertices(); ++vertex) rows.AddVertex(vertex);
-    if (refiner.GetSchemeType() == Sdc::SCHEME_CATMARK) {
+    if (refiner.GetSchemeType() != Sdc::SCHEME_LOOP) {
         for (Index face = 0; face < coarse.GetNumFaces(); ++face)
             rows.AddNew(coarse.GetFaceChildVertex(face), coarse.GetFaceVertices(face));
     }

@@ -104,13 +104,14 @@ TEST(Differential, AllLevelsInSpaceChangeNothing) {
     EXPECT_LT(test::LargestDifference(spatial.positions, result.positions), 1e-9);
 }
 
-/// Thin-plate energies of differential over spatial Butterfly: the mean's ratio, and the
-/// integral's.
-std::array<double, 2> CompareEnergies(engine::Scene const& scene) {
-    auto const report = RefineAndReport(scene, 3, {.rule = SubdivisionRule::Butterfly}).report;
+/// Thin-plate energies of a rule in differential space over those in space: the mean's ratio, and
+/// the integral's.
+std::array<double, 2> CompareEnergies(engine::Scene const& scene,
+                                      far_ext::TunedRule const& rule = SubdivisionRule::Butterfly) {
+    auto const report = RefineAndReport(scene, 3, {.rule = rule}).report;
     engine::Job job;
-    auto const spatial = engine::RefineUniformly(
-        engine::Model::Build(scene), {.levels = 3, .rule = SubdivisionRule::Butterfly}, job);
+    auto const spatial =
+        engine::RefineUniformly(engine::Model::Build(scene), {.levels = 3, .rule = rule}, job);
     auto const refiner = far_ext::CreateRefiner(spatial.cage);
     auto const energy = eval::FindThinPlateEnergy(
         eval::MeasureMeshCurvature(refiner->GetLevel(0), spatial.positions));
@@ -133,6 +134,22 @@ TEST(Differential, ButterflyGetsMuchSmootherOnIrregularMeshes) {
         EXPECT_LE(mean, 0.75) << name;
         EXPECT_LE(integral, 0.8) << name;
     }
+}
+
+// Rules that keep vertices ripple in space; approximating ones have less to gain.
+TEST(Differential, RulesThatKeepVerticesGainMost) {
+    auto scene = test::LoadAsset("tri/spot_low_resolution.obj");
+    scene.cage.scheme = Sdc::SCHEME_LOOP;
+    double const ofLoop = CompareEnergies(scene, SubdivisionRule::Scheme)[1];
+    for (far_ext::TunedRule const& rule :
+         {far_ext::TunedRule(SubdivisionRule::OriginalButterfly),
+          far_ext::TunedRule(SubdivisionRule::OriginalButterfly, 1.0 / 32),
+          far_ext::TunedRule(SubdivisionRule::Interpolating)})
+        EXPECT_LT(CompareEnergies(scene, rule)[1], 0.85 * ofLoop);
+    auto const quads = test::LoadAsset("tri/torus_quad.off");
+    double const ofCatmark = CompareEnergies(quads, SubdivisionRule::Scheme)[1];
+    for (auto rule : {SubdivisionRule::Kobbelt, SubdivisionRule::Interpolating})
+        EXPECT_LT(CompareEnergies(quads, rule)[1], 0.95 * ofCatmark);
 }
 
 // An edit that changes nothing changes nothing; every other kind does, and leaves finite positions.

@@ -82,5 +82,19 @@ TEST(Interpolating, BoundariesHaveFourPoints) {
     }
 }
 
+// Bilinear steps move no vertex, so that there is nothing to move back.
+TEST(Interpolating, OfABilinearStepIsThatStep) {
+    auto const scene = test::MakeDodecahedron();
+    auto bilinear = scene;
+    bilinear.cage.scheme = Sdc::SCHEME_BILINEAR;
+    auto const refiner = test::MakeRefiner(bilinear, 1);
+    auto const apply = [&](far_ext::SubdivisionRule rule) {
+        return test::Apply(far_ext::BuildSubdivisionRows(*refiner, 1, rule), scene.positions);
+    };
+    EXPECT_LT(test::LargestDifference(apply(far_ext::SubdivisionRule::Interpolating),
+                                      apply(far_ext::SubdivisionRule::Scheme)),
+              1e-15);
+}
+
 }  // namespace
 }  // namespace limn
