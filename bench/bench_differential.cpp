@@ -149,7 +149,7 @@ void MeasureWhole(int numRounds, engine::Scene const& scene, int levels) {
         auto const start = std::chrono::steady_clock::now();
         report = engine::RefineDifferentially(model, {.levels = levels}, job).report;
         std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - start;
-        shares.push_back(elapsed.count() / report.solveSeconds);
+        shares.push_back(elapsed.count() / report.seconds.reconstruction);
     });
     fmt::print("\nThe whole refinement\n");
     rounds.Run();

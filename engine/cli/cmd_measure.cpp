@@ -3,8 +3,10 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
+#include "engine/cli/options/choices.h"
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/option_rules.h"
+#include "engine/cli/options/word_flag.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/images/png.h"
 #include "engine/io/mesh_writer.h"
@@ -17,13 +19,23 @@ namespace limn::cli {
 namespace {
 
 struct MeasureArguments {
-    std::string mesh, prefix, range;
+    std::string mesh, prefix, range, picture;
     engine::MeasuredSurface surface = engine::MeasuredSurface::Limit;
     std::vector<double> view{1.0, 0.6, 0.8};
-    bool hasHighlight = false, hasPicture = false;
+    bool hasHighlight = false;
+
+    bool HasPicture() const { return !picture.empty(); }
 };
 
-engine::MapTraits const kMean{.name = "mean", .units = "1/length"};
+engine::MapTraits const kMean{.name = "mean", .units = "1/length"},
+    kGaussian{.name = "gaussian", .units = "1/length^2"};
+
+/// Which curvature the picture shows. A flag without a word is "true".
+engine::MapTraits const& ChooseCurvature(std::string const& picture) {
+    if (picture.empty() || picture == "true" || picture == kMean.name) return kMean;
+    if (picture == kGaussian.name) return kGaussian;
+    RefuseChoice("--picture", picture, {kMean.name, kGaussian.name});
+}
 
 nlohmann::json ToJson(engine::CurvatureStatistics const& statistics) {
     return {{"min", statistics.min},
@@ -57,19 +69,21 @@ nlohmann::json ToJson(engine::Measurement const& found) {
 int RunMeasure(MeasureArguments const& a, CLI::App const& verb, Context& context) {
     context.KeepStdoutForData(true);
     RequirePrefix("-o", a.prefix);
-    if (a.prefix.empty() && (a.hasHighlight || a.hasPicture)) {
+    if (a.prefix.empty() && (a.hasHighlight || a.HasPicture())) {
         throw Error(ErrorCode::BadOption,
                     "--highlight and --picture write files; name their beginning with -o");
     }
-    if (!a.hasPicture && !a.range.empty())
+    if (!a.HasPicture() && !a.range.empty())
         throw Error(ErrorCode::BadOption, "--preview-range needs --picture");
+    auto const& pictured = ChooseCurvature(a.picture);
+    std::string const picturePath = fmt::format("{}.{}.png", a.prefix, pictured.name);
     std::optional<engine::PreviewRange> range;
     if (!a.range.empty()) range = engine::PreviewRange::Parse(a.range);
-    if (!a.hasHighlight && !a.hasPicture)
+    if (!a.hasHighlight && !a.HasPicture())
         RefuseEach(verb, {"--view"}, "needs --highlight or --picture");
     std::vector<NamedFile> written;
     if (!a.prefix.empty()) written.push_back({"-o", a.prefix + ".ply"});
-    if (a.hasPicture) written.push_back({"--picture", a.prefix + ".mean.png"});
+    if (a.HasPicture()) written.push_back({"--picture", picturePath});
     if (a.hasHighlight) written.push_back({"--highlight", a.prefix + ".highlight.png"});
     context.KeepApart({{"MESH", a.mesh}}, written);
     auto const model = context.Load(a.mesh);
@@ -87,9 +101,9 @@ int RunMeasure(MeasureArguments const& a, CLI::App const& verb, Context& context
         context.GetReport()["precision_written"] = kPrecisionWords.GetWord(precision);
         job.Start("drawing pictures");
         engine::PictureView const view{{a.view[0], a.view[1], a.view[2]}};
-        if (a.hasPicture)
-            engine::WritePng(files.Open(a.prefix + ".mean.png"),
-                             engine::DrawValues(curved, kMean, view, range));
+        if (a.HasPicture())
+            engine::WritePng(files.Open(picturePath),
+                             engine::DrawValues(curved, pictured, view, range));
         if (a.hasHighlight)
             engine::WritePng(files.Open(a.prefix + ".highlight.png"),
                              engine::DrawHighlights(curved, view));
@@ -113,8 +127,9 @@ Verb AddMeasure(CLI::App& app) {
                   "limit (default): exact curvature of the limit; mesh: of the mesh itself");
     verb->add_flag("--highlight", a->hasHighlight,
                    "also write PREFIX.highlight.png: highlight lines of the mesh");
-    verb->add_flag("--picture", a->hasPicture,
-                   "also write PREFIX.mean.png: the mesh in colours of mean curvature");
+    AddWordFlag(*verb, "--picture", a->picture, {kMean.name, kGaussian.name},
+                "also write PREFIX.mean.png: the mesh in colours of mean curvature; with gaussian "
+                "behind it PREFIX.gaussian.png, of Gaussian curvature");
     verb->add_option("--preview-range", a->range,
                      "colours of the picture: A,B, p1 (default: 1st to 99th percentile of what is "
                      "seen), full or asinh");

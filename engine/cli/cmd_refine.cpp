@@ -32,21 +32,29 @@ std::vector<char const*> const kDifferentialOptions{
 struct RefineArguments {
     std::string mesh, output, editPath;
     std::optional<NamedRule> rule;
-    std::optional<double> tolerance;
+    std::optional<double> tolerance, tension;
     int levels = 1;
     bool isDifferential = false, toLimit = false, keepsResult = false, isCurve = false;
     engine::DifferentialOptions options;
 };
 
-void RequireTriangles(engine::Model const& model, NamedRule const& rule) {
+/// Refuses a mesh with other faces than the rule can have.
+void RequireSize(engine::Model const& model, NamedRule const& rule, int size,
+                 char const* whatItTakes) {
     auto const& sizes = model.GetCage().faceSizes;
-    auto const polygon = std::ranges::find_if(sizes, [](int size) { return size != 3; });
-    if (polygon == sizes.end()) return;
-    throw Error(
-        ErrorCode::BadMesh,
-        fmt::format("{}: {} has {} corners; --rule {} takes triangles only, --rule catmark all",
-                    model.GetPath(), model.NameFace(static_cast<Index>(polygon - sizes.begin())),
-                    *polygon, kRuleWords.GetWord(rule)));
+    auto const other = std::ranges::find_if(sizes, [size](int found) { return found != size; });
+    if (other == sizes.end()) return;
+    throw Error(ErrorCode::BadMesh,
+                fmt::format("{}: {} has {} corners; --rule {} takes {}", model.GetPath(),
+                            model.NameFace(static_cast<Index>(other - sizes.begin())), *other,
+                            kRuleWords.GetWord(rule), whatItTakes));
+}
+
+void RequireFaces(engine::Model const& model, NamedRule const& rule) {
+    if (rule.scheme == Sdc::SCHEME_LOOP)
+        RequireSize(model, rule, 3, "triangles only, --rule catmark all");
+    if (rule.rule == SubdivisionRule::Kobbelt)
+        RequireSize(model, rule, 4, "quads only; make them by one level of --rule catmark first");
 }
 
 /// The mesh under the scheme that the rule asks for, where one is named.
@@ -58,12 +66,12 @@ engine::Model ApplyRule(RefineArguments const& a, CommonOptions const& common,
                     fmt::format("--rule {} contradicts --scheme {}", kRuleWords.GetWord(*a.rule),
                                 engine::kSchemeWords.GetWord(*common.scheme)));
     }
-    if (a.rule->scheme == Sdc::SCHEME_LOOP) RequireTriangles(model, *a.rule);
+    RequireFaces(model, *a.rule);
     return WithScheme(model, a.rule->scheme);
 }
 
-SubdivisionRule GetRule(RefineArguments const& a) {
-    return a.rule ? a.rule->rule : SubdivisionRule::Scheme;
+far_ext::TunedRule GetRule(RefineArguments const& a) {
+    return {a.rule ? a.rule->rule : SubdivisionRule::Scheme, a.tension};
 }
 
 bool IsFit(engine::DifferentialOptions const& options) {
@@ -85,6 +93,18 @@ engine::DifferentialOptions MakeOptions(RefineArguments const& a, CommonOptions 
     options.orientation = common.orientation;
     if (!a.editPath.empty()) options.edit = engine::ReadCurvatureEdit(a.editPath);
     return options;
+}
+
+nlohmann::json ToJson(std::vector<engine::EditOutcome> const& edits) {
+    auto list = nlohmann::json::array();
+    for (auto const& [target, reached] : edits) {
+        bool const isMean = std::holds_alternative<double>(target.asked);
+        auto& entry = list.emplace_back(nlohmann::json{
+            {"vertex", target.vertex}, {"kind", isMean ? "mean" : "normal"}, {"reached", nullptr}});
+        std::visit([&](auto const& asked) { entry["asked"] = asked; }, target.asked);
+        if (reached) entry["reached"] = *reached;
+    }
+    return list;
 }
 
 /// Why the tolerance was missed, and what became of the result.
@@ -114,7 +134,10 @@ engine::DifferentialResult RefineDifferentially(RefineArguments const& a,
     auto const report = context.GetReport();
     report["unknowns"] = found.unknowns;
     report["iterations"] = found.iterations;
-    report["solve_seconds"] = found.solveSeconds;
+    report["solve_seconds"] = found.seconds.reconstruction;
+    report["stages"] = {{"coordinates", found.seconds.coordinates},
+                        {"subdivision", found.seconds.subdivision},
+                        {"reconstruction", found.seconds.reconstruction}};
     report["residual"] = found.residual;
     report["compatibility_defect"] = found.compatibilityDefect;
     report["residual_rounding"] = found.rounding;
@@ -127,6 +150,7 @@ engine::DifferentialResult RefineDifferentially(RefineArguments const& a,
     report["size_ratio"] = found.sizeRatio;
     report["thin_plate_energy"] = found.energy.mean;
     report["thin_plate_energy_area"] = found.energy.integral;
+    if (!a.editPath.empty()) report["edits"] = ToJson(found.edits);
     if (!found.converged) {
         context.MissTarget(
             fmt::format("{}: {}", a.mesh,
@@ -144,13 +168,14 @@ void CheckSpace(RefineArguments const& a, CLI::App const& verb) {
     }
 }
 
-/// Polylines by the rule that boundaries follow: cubic B-spline, or four-point for butterfly.
+/// Polylines by the rule that boundaries follow: cubic B-spline, or four-point where the rule
+/// interpolates.
 int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& context) {
     constexpr char const* kWhy = "means nothing with --curve; leave it out";
     RefuseEach(verb, kDifferentialOptions, kWhy);
-    RefuseEach(verb, {"--limit", "--weld"}, kWhy);
-    auto const rule = GetRule(a) == SubdivisionRule::Butterfly ? eval::CurveRule::FourPoint
-                                                               : eval::CurveRule::CubicBSpline;
+    RefuseEach(verb, {"--limit", "--weld", "--tension"}, kWhy);
+    auto const rule =
+        GetRule(a).IsInterpolating() ? eval::CurveRule::FourPoint : eval::CurveRule::CubicBSpline;
     context.GetJob().Start("reading " + a.mesh);
     auto const [curves, sha256] = engine::ReadPolylines(a.mesh);
     auto const start = std::chrono::steady_clock::now();
@@ -176,6 +201,7 @@ int RunRefine(RefineArguments const& a, CLI::App const& verb, Context& context) 
     context.KeepApart({{"MESH", a.mesh}, {"--edit", a.editPath}}, {{"-o", a.output}});
     if (a.isCurve) return RefineCurves(a, verb, context);
     CheckSpace(a, verb);
+    far_ext::CheckTension(GetRule(a));
     auto const model = ApplyRule(a, context.GetCommon(), context.Load(a.mesh));
     context.GetReport()["inputs"].back()["subdivision"] =
         engine::DescribeSubdivision(model.GetCage());
@@ -207,11 +233,17 @@ Verb AddRefine(CLI::App& app) {
     AddWordOption(*verb, "--space", a->isDifferential, kIsDifferentialWords,
                   "spatial (default): rules on positions; differential: on mean-curvature normals");
     AddWordOption(*verb, "--rule", a->rule, kRuleWords,
-                  "loop, catmark or butterfly (default: the scheme's)");
+                  "default: the scheme's; loop and catmark approximate, the others keep vertices: "
+                  "butterfly (modified), butterfly-original and kobbelt (quads) with a --tension, "
+                  "interpolating-loop and interpolating-catmark deduced from those two");
+    AddNumberOption(*verb, "--tension", a->tension,
+                    "of butterfly-original from 0 to 0.125 (default 0.0625), of kobbelt from 0 to "
+                    "2 (default 1)",
+                    {0.0, 2.0});
     verb->add_flag("--limit", a->toLimit, "move the result's vertices to the limit surface");
-    verb->add_flag(
-        "--curve", a->isCurve,
-        "MESH holds polylines (OBJ 'l'); their rule is cubic B-spline, for butterfly four-point");
+    verb->add_flag("--curve", a->isCurve,
+                   "MESH holds polylines (OBJ 'l'); their rule is cubic B-spline, or four-point "
+                   "where --rule keeps vertices");
     auto const differential = [](CLI::Option* option) {
         return option->group("Options of --space differential");
     };
@@ -229,9 +261,11 @@ Verb AddRefine(CLI::App& app) {
                                "multigrid (default) or cholesky"));
     differential(verb->add_option(
         "--edit", a->editPath,
-        "JSON, all keys optional, vertices 0-based: {\"curvature\": [{\"vertex\": 3, "
-        "\"factor\": 1.5}], \"rotate\": [{\"vertex\": 7, \"axis\": [0,0,1], "
-        "\"degrees\": 20}], \"filter\": \"polarise\"}"));
+        "JSON, all keys optional, vertices 0-based: {\"set_curvature\": [{\"vertex\": 3, "
+        "\"mean\": 0.2}], \"curvature\": [{\"vertex\": 4, \"factor\": 1.5}], \"set_normal\": "
+        "[{\"vertex\": 5, \"normal\": [0,1,1]}], \"rotate\": [{\"vertex\": 7, \"axis\": [0,0,1], "
+        "\"degrees\": 20}], \"filter\": \"polarise\" or {\"points\": [[0,0], [0.5,0.2], [1,1]]}}; "
+        "applied in this order"));
     differential(AddNumberOption(
         *verb, "--tolerance", a->tolerance,
         "of what remains of the differential coordinates, over their length (default "

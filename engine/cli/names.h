@@ -42,9 +42,14 @@ struct NamedRule {
     bool operator==(NamedRule const&) const = default;
 };
 inline constexpr auto kRuleWords = MakeEnumWords<NamedRule>(
-    "rule", {{{Sdc::SCHEME_LOOP, far_ext::SubdivisionRule::Scheme}, "loop"},
-             {{Sdc::SCHEME_CATMARK, far_ext::SubdivisionRule::Scheme}, "catmark"},
-             {{Sdc::SCHEME_LOOP, far_ext::SubdivisionRule::Butterfly}, "butterfly"}});
+    "rule",
+    {{{Sdc::SCHEME_LOOP, far_ext::SubdivisionRule::Scheme}, "loop"},
+     {{Sdc::SCHEME_CATMARK, far_ext::SubdivisionRule::Scheme}, "catmark"},
+     {{Sdc::SCHEME_LOOP, far_ext::SubdivisionRule::Butterfly}, "butterfly"},
+     {{Sdc::SCHEME_LOOP, far_ext::SubdivisionRule::OriginalButterfly}, "butterfly-original"},
+     {{Sdc::SCHEME_CATMARK, far_ext::SubdivisionRule::Kobbelt}, "kobbelt"},
+     {{Sdc::SCHEME_LOOP, far_ext::SubdivisionRule::Interpolating}, "interpolating-loop"},
+     {{Sdc::SCHEME_CATMARK, far_ext::SubdivisionRule::Interpolating}, "interpolating-catmark"}});
 
 inline constexpr auto kLaplacianWords = MakeEnumWords<engine::Laplacian>(
     "laplacian", {{engine::Laplacian::Combinatorial, "combinatorial"},

@@ -12,6 +12,7 @@
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/option_list.h"
 #include "engine/cli/options/parse_faults.h"
+#include "engine/cli/options/word_flag.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/cli/terminal/completion.h"
 #include "engine/cli/terminal/manual.h"
@@ -193,8 +194,10 @@ void Parser::CheckBeginning(std::vector<std::string> const& arguments) const {
     }
 }
 
-std::optional<std::string> Parser::Parse(std::vector<std::string> const& arguments) {
-    if (!arguments.empty()) CheckBeginning(arguments);
+std::optional<std::string> Parser::Parse(std::vector<std::string> const& typed) {
+    if (!typed.empty()) CheckBeginning(typed);
+    bool const hasVerb = !typed.empty() && !IsFlag(typed[0]);
+    auto const arguments = hasVerb ? JoinWordFlags(*_app.get_subcommand(typed[0]), typed) : typed;
     try {
         _app.parse(
             std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // last one first

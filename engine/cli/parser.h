@@ -21,7 +21,7 @@ public:
 
     /// \return        what to print, where that is all that was asked for (help, version, ...)
     /// \throws Error  BadOption
-    std::optional<std::string> Parse(std::vector<std::string> const& arguments);
+    std::optional<std::string> Parse(std::vector<std::string> const& typed);
 
     CommonOptions const& GetCommon() const { return _common; }
 

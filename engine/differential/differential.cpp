@@ -25,34 +25,20 @@ namespace {
 using Level = Far::TopologyLevel;
 using Rows = std::vector<double>;
 
-void ApplyFilter(eval::DirMag& split) {
-    auto const [low, high] = std::minmax_element(split.magnitudes.begin(), split.magnitudes.end());
-    double const least = *low, range = *high - *low;
-    if (!(range > 0.0)) return;  // nothing to tell apart
-    for (double& magnitude : split.magnitudes)
-        magnitude = least + range * PolariseCurvature((magnitude - least) / range);
-}
+/// Adds the time that it lives for.
+class StageClock {
+public:
+    explicit StageClock(double& seconds) : _seconds(seconds) {}
+    StageClock(StageClock const&) = delete;
+    StageClock& operator=(StageClock const&) = delete;
+    ~StageClock() { _seconds += std::chrono::duration<double>(Clock::now() - _start).count(); }
 
-/// Changes coordinates of a level whose first vertices are the input's.
-void ApplyEdit(CurvatureEdit const& edit, Level const& level, Rows const& positions,
-               Orientation orientation, Rows& deltas) {
-    if (edit.isPolarised) {
-        auto split = eval::SplitDirMag(level, positions, deltas);
-        for (double& magnitude : split.magnitudes) magnitude *= GetSign(orientation);
-        ApplyFilter(split);
-        for (double& magnitude : split.magnitudes) magnitude *= GetSign(orientation);
-        deltas = eval::JoinDirMag(split);
-    }
-    far_ext::MutablePoints const points(deltas);
-    for (auto const& [vertex, factor] : edit.factors) {
-        points[vertex] *= factor;
-    }
-    for (auto const& [vertex, axis, degrees] : edit.rotations) {
-        Eigen::Vector3d const direction = Eigen::Vector3d(axis.data()).normalized();
-        points[vertex] = Eigen::AngleAxisd(degrees * std::acos(-1.0) / 180.0, direction) *
-                         Eigen::Vector3d(points[vertex]);
-    }
-}
+private:
+    using Clock = std::chrono::steady_clock;
+
+    double& _seconds;
+    Clock::time_point const _start = Clock::now();
+};
 
 /// A boundary vertex has no mean curvature of its own; it takes the mean of its inner neighbours'.
 void ExtendToBoundary(Level const& level, Rows& deltas) {
@@ -69,6 +55,11 @@ void ExtendToBoundary(Level const& level, Rows& deltas) {
         }
         points[vertex] = sum / std::max(1, count);
     }
+}
+
+/// The angle between two directions.
+double FindDegrees(Eigen::Vector3d const& a, Eigen::Vector3d const& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / std::acos(-1.0);
 }
 
 double FindSize(Rows const& positions) {
@@ -97,8 +88,12 @@ private:
     Level GetLast() const { return _refiner->GetLevel(_refiner->GetMaxLevel()); }
 
     Rows FindAreaDeltas(Rows const& positions) const;
+    Rows FindStartDeltas(Laplacian laplacian);
     Rows FindPositions();
     Rows Subdivide(Rows deltas);
+    void RefineInSpace();
+    Rows Reconstruct(Rows const& deltas, Rows const& areaDeltas);
+    void Measure(Rows const& positions);
     void FitAreas(eval::Reconstructor& reconstructor, Rows const& deltas, Rows& positions);
 
     Model const& _model;
@@ -120,9 +115,26 @@ Rows DifferentialRefinement::FindAreaDeltas(Rows const& positions) const {
     return deltas;
 }
 
-/// Edits coordinates of the start level and takes them to the last.
+/// Coordinates of the start level, edited. Those by areas are twice the mean curvature.
+Rows DifferentialRefinement::FindStartDeltas(Laplacian laplacian) {
+    StageClock const clock(_report.seconds.coordinates);
+    bool const knowsAreas = laplacian != Laplacian::Combinatorial;
+    Rows deltas =
+        knowsAreas ? FindAreaDeltas(_start)
+                   : far_ext::FindDeltas(far_ext::BuildCombinatorialLaplacian(GetStart()), _start);
+    auto const lengths =
+        knowsAreas ? Rows(deltas.size() / 3, 2.0) : FindCombinatorialLengths(GetStart(), _start);
+    _report.edits.clear();
+    for (EditTarget const& target :
+         ApplyEdit(_options.edit, {GetStart(), _start, lengths, _options.orientation},
+                   _model.GetPath(), deltas))
+        _report.edits.push_back({target});
+    return deltas;
+}
+
+/// Takes coordinates of the start level to the last.
 Rows DifferentialRefinement::Subdivide(Rows deltas) {
-    ApplyEdit(_options.edit, GetStart(), _start, _options.orientation, deltas);
+    StageClock const clock(_report.seconds.subdivision);
     int level = _options.spatialLevels;
     auto split = eval::SplitDirMag(GetStart(), _start, deltas);
     _report.tangentialShare = split.tangentialShare;
@@ -141,6 +153,16 @@ Rows DifferentialRefinement::Subdivide(Rows deltas) {
     return deltas;
 }
 
+void DifferentialRefinement::RefineInSpace() {
+    StageClock const clock(_report.seconds.subdivision);
+    _start = _spatial;
+    for (int level = 1; level <= _refiner->GetMaxLevel(); ++level) {
+        _job.CheckStopped();
+        _spatial = eval::SubdivideValues<3>(*_refiner, level, _options.rule, _spatial);
+        if (level == _options.spatialLevels) _start = _spatial;
+    }
+}
+
 void DifferentialRefinement::FitAreas(eval::Reconstructor& reconstructor, Rows const& deltas,
                                       Rows& positions) {
     auto const kind = _options.laplacian == Laplacian::Mesh ? eval::AreaLaplacianKind::Heat
@@ -156,24 +178,8 @@ void DifferentialRefinement::FitAreas(eval::Reconstructor& reconstructor, Rows c
     _report.hasFitStalled = fit.hasStalled && !fit.converged;
 }
 
-Rows DifferentialRefinement::FindPositions() {
-    _job.Start("subdividing coordinates");
-    _start = _spatial;
-    for (int level = 1; level <= _refiner->GetMaxLevel(); ++level) {
-        _job.CheckStopped();
-        _spatial = eval::SubdivideValues<3>(*_refiner, level, _options.rule, _spatial);
-        if (level == _options.spatialLevels) _start = _spatial;
-    }
-    Rows deltas =
-        Subdivide(far_ext::FindDeltas(far_ext::BuildCombinatorialLaplacian(GetStart()), _start));
-    double const scale = std::pow(0.25, _refiner->GetMaxLevel() - _options.spatialLevels);
-    for (double& delta : deltas) delta *= scale;
-    Rows areaDeltas;
-    if (_options.laplacian != Laplacian::Combinatorial)
-        areaDeltas = Subdivide(FindAreaDeltas(_start));
-
-    _job.CheckStopped();
-    auto const start = std::chrono::steady_clock::now();
+Rows DifferentialRefinement::Reconstruct(Rows const& deltas, Rows const& areaDeltas) {
+    StageClock const clock(_report.seconds.reconstruction);
     Rows positions = _spatial;
     bool const isCholesky = _options.solver == DifferentialSolver::Cholesky;
     _job.Start(isCholesky ? "factorising" : "building levels");
@@ -188,18 +194,46 @@ Rows DifferentialRefinement::FindPositions() {
     _report.compatibilityDefect = solve.compatibilityDefect;
     _report.converged = solve.converged;
     if (!areaDeltas.empty()) FitAreas(reconstructor, areaDeltas, positions);
-    _report.solveSeconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return positions;
+}
 
+/// What the mesh as it is written has of size, energy and edits.
+void DifferentialRefinement::Measure(Rows const& positions) {
+    _job.Start("measuring energy");
+    double const size = FindSize(_spatial);
+    _report.sizeRatio = size > 0.0 ? FindSize(positions) / size : 1.0;
+    auto const curvature = eval::MeasureMeshCurvature(GetLast(), positions, _options.orientation);
+    _report.energy = eval::FindThinPlateEnergy(curvature);
+    if (_report.edits.empty()) return;
+    Rows const normals = eval::FindAngleNormals(GetLast(), positions);
+    for (auto& [target, reached] : _report.edits) {
+        auto const vertex = static_cast<size_t>(target.vertex);
+        if (auto const* const asked = std::get_if<std::array<double, 3>>(&target.asked)) {
+            Eigen::Vector3d const normal =
+                GetSign(_options.orientation) * far_ext::Points(normals)[vertex];
+            reached = FindDegrees(normal, Eigen::Vector3d(asked->data()));
+        } else if (curvature.areas[vertex] > 0.0) {
+            reached = curvature.GetMean(vertex);
+        }
+    }
+}
+
+Rows DifferentialRefinement::FindPositions() {
+    _job.Start("subdividing coordinates");
+    RefineInSpace();
+    Rows deltas = Subdivide(FindStartDeltas(Laplacian::Combinatorial)), areaDeltas;
+    double const scale = std::pow(0.25, _refiner->GetMaxLevel() - _options.spatialLevels);
+    for (double& delta : deltas) delta *= scale;
+    if (_options.laplacian != Laplacian::Combinatorial)
+        areaDeltas = Subdivide(FindStartDeltas(_options.laplacian));
+
+    _job.CheckStopped();
+    Rows positions = Reconstruct(deltas, areaDeltas);
     if (_options.target) {
         _report.precision = ChoosePrecision(*_options.target, FindExtent(positions), _job);
         RoundAsWritten(_options.target->path, _report.precision, positions);
     }
-    _job.Start("measuring energy");
-    double const size = FindSize(_spatial);
-    _report.sizeRatio = size > 0.0 ? FindSize(positions) / size : 1.0;
-    _report.energy = eval::FindThinPlateEnergy(
-        eval::MeasureMeshCurvature(GetLast(), positions, _options.orientation));
+    Measure(positions);
     return positions;
 }
 
@@ -223,6 +257,7 @@ DifferentialResult DifferentialRefinement::Run() {
 }
 
 void CheckOptions(Model const& model, DifferentialOptions const& options) {
+    far_ext::CheckTension(options.rule);
     if (options.spatialLevels + options.dirMagLevels > options.levels) {
         throw Error(
             ErrorCode::BadOption,
@@ -243,8 +278,25 @@ void CheckOptions(Model const& model, DifferentialOptions const& options) {
                     fmt::format("{}: the edit names vertex {}; there are 0 to {}", model.GetPath(),
                                 vertex, numVertices - 1));
     };
-    for (auto const& factor : options.edit.factors) check(factor.vertex);
-    for (auto const& rotation : options.edit.rotations) check(rotation.vertex);
+    for (Index vertex : options.edit.ListVertices()) check(vertex);
+}
+
+/// The combinatorial Laplacian takes edges at a vertex for equally long and evenly spread.
+void WarnOfMissedMeans(DifferentialOptions const& options, DifferentialReport const& report,
+                       Job& job) {
+    constexpr double kMissed = 0.2;
+    if (options.laplacian != Laplacian::Combinatorial) return;
+    for (auto const& [target, reached] : report.edits) {
+        auto const* const asked = std::get_if<double>(&target.asked);
+        if (!asked || !reached || std::abs(*reached - *asked) <= kMissed * std::abs(*asked))
+            continue;
+        job.Warn(fmt::format(
+            "vertex {}: mean curvature {:.3g} was asked for and {:.3g} reached: "
+            "the combinatorial Laplacian sees no lengths, so that uneven edges, "
+            "and neighbours' curvature, change what comes out; the report has all vertices",
+            target.vertex, *asked, *reached));
+        return;
+    }
 }
 
 void Warn(Model const& model, DifferentialOptions const& options, DifferentialReport const& report,
@@ -261,6 +313,7 @@ void Warn(Model const& model, DifferentialOptions const& options, DifferentialRe
                         "takes them for normals; leave it out",
                         report.tangentialShare, eval::kDirMagLimit));
     }
+    WarnOfMissedMeans(options, report, job);
     if (std::abs(report.sizeRatio - 1.0) > 0.1) {
         bool const isScaled = !options.edit.factors.empty();
         job.Warn(fmt::format("the result has {:.2f} times the size of the spatial refinement; {}",
@@ -272,14 +325,10 @@ void Warn(Model const& model, DifferentialOptions const& options, DifferentialRe
 
 }  // namespace
 
-double PolariseCurvature(double x) {
-    double const push = std::pow(std::abs(x - 0.5) / 8.0, 0.25);
-    return x > 0.5 ? 0.5 + push : 0.5 - push;
-}
-
 DifferentialResult RefineDifferentially(Model const& model, DifferentialOptions const& options,
                                         Job& job) {
     CheckOptions(model, options);
+    WarnOfRoughVertices(model, options.rule, job);
     DifferentialResult result = DifferentialRefinement(model, options, job).Run();
     Warn(model, options, result.report, job);
     return result;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
+#include "engine/differential/curvature_edit.h"
 #include "engine/io/written_numbers.h"
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
@@ -13,33 +13,13 @@
 
 namespace limn::engine {
 
-/// Changes to differential coordinates before they are subdivided, by vertices of the input.
-struct CurvatureEdit {
-    struct Factor {
-        Index vertex;
-        double factor;
-    };
-    struct Rotation {
-        Index vertex;
-        std::array<double, 3> axis;
-        double degrees;
-    };
-    bool isPolarised =
-        false;  ///< first: mean curvatures, brought to [0, 1], through [Zhu11] Sec. 4.4's filter
-    std::vector<Factor> factors;      ///< then: on mean curvature
-    std::vector<Rotation> rotations;  ///< last: of its direction
-};
-
-/// [Zhu11] Sec. 4.4: 1/2 +- (|x - 1/2| / 8)^(1/4), which pushes values apart around the middle.
-double PolariseCurvature(double x);
-
 enum class Laplacian { Combinatorial, Cotangent, Mesh };
 
 enum class DifferentialSolver { Multigrid, Cholesky };
 
 struct DifferentialOptions {
     int levels = 1;  ///< 0 to 10, those in space included
-    far_ext::SubdivisionRule rule = far_ext::SubdivisionRule::Scheme;
+    far_ext::TunedRule rule{};
     Laplacian laplacian = Laplacian::Combinatorial;
     int dirMagLevels = 0;   ///< levels done by direction and magnitude
     int spatialLevels = 0;  ///< levels done in space before
@@ -54,12 +34,25 @@ struct DifferentialOptions {
     std::optional<MeshTarget> target{};
 };
 
+/// What became of an edit at a vertex.
+struct EditOutcome {
+    EditTarget target;
+    /// Mean curvature of the result there, by the tensor of its dihedral angles, or by how many
+    /// degrees its normal is off; none on a boundary, which has no mean curvature.
+    std::optional<double> reached{};
+};
+
+/// How long the parts of the work took.
+struct DifferentialStages {
+    double coordinates = 0.0, subdivision = 0.0, reconstruction = 0.0;
+};
+
 struct DifferentialReport {
     Index unknowns = 0;
     int iterations = 0;
-    double solveSeconds = 0.0;  ///< set-up of the solver included
-    double residual = 0.0;      ///< of the positions handed back
-    double rounding = 0.0;      ///< what of it the positions' being doubles may account for
+    DifferentialStages seconds;  ///< of reconstruction: set-up of the solver included
+    double residual = 0.0;       ///< of the positions handed back
+    double rounding = 0.0;       ///< what of it the positions' being doubles may account for
     double compatibilityDefect = 0.0;
     bool converged = false;
     int fitSteps = 0;              ///< of the fit to a Laplacian that knows areas
@@ -68,7 +61,8 @@ struct DifferentialReport {
     double sizeRatio =
         1.0;  ///< rms distance from the mean vertex, over that of the spatial refinement
     Precision precision = Precision::Double;  ///< what the mesh's coordinates are rounded to
-    eval::ThinPlateEnergy energy;             ///< of the rounded mesh, and so is the size
+    eval::ThinPlateEnergy energy;             ///< of the rounded mesh, and so are size and edits
+    std::vector<EditOutcome> edits;
 };
 
 struct DifferentialResult {

@@ -39,31 +39,71 @@ public:
         Json const json = Parse(file.GetBytes());
         if (!json.is_object()) Refuse("this is no JSON object");
         CurvatureEdit edit;
-        for (auto const& [key, value] : json.items()) {
-            if (key == "curvature") {
-                for (Json const& entry : ListOf(key, value)) {
-                    edit.factors.push_back({VertexOf(key, entry), NumberOf(key, entry, "factor")});
-                    CheckKeys(key, entry, 2);
-                }
-            } else if (key == "rotate") {
-                for (Json const& entry : ListOf(key, value)) {
-                    edit.rotations.push_back(
-                        {VertexOf(key, entry), AxisOf(entry), NumberOf(key, entry, "degrees")});
-                    CheckKeys(key, entry, 3);
-                }
-            } else if (key == "filter") {
-                if (value != "polarise")
-                    Refuse(fmt::format("filter is {}; 'polarise' is possible", Show(value)));
-                edit.isPolarised = true;
-            } else {
-                Refuse(fmt::format("key {} is not known; curvature, rotate and filter are",
-                                   TextScanner::Quote(key)));
-            }
-        }
+        for (auto const& [key, value] : json.items()) ReadKey(key, value, edit);
         return edit;
     }
 
 private:
+    void ReadKey(std::string const& key, Json const& value, CurvatureEdit& edit) const {
+        if (key == "filter") return ReadFilter(value, edit);
+        auto const forEach = [&](size_t numKeys, auto add) {
+            for (Json const& entry : ListOf(key, value)) {
+                add(VertexOf(key, entry), entry);
+                CheckKeys(key, entry, numKeys);
+            }
+        };
+        if (key == "set_curvature") {
+            forEach(2, [&](Index vertex, Json const& entry) {
+                edit.means.push_back({vertex, NumberOf(key, entry, "mean")});
+            });
+        } else if (key == "curvature") {
+            forEach(2, [&](Index vertex, Json const& entry) {
+                edit.factors.push_back({vertex, NumberOf(key, entry, "factor")});
+            });
+        } else if (key == "set_normal") {
+            forEach(2, [&](Index vertex, Json const& entry) {
+                edit.normals.push_back({vertex, DirectionOf(key, entry, "normal")});
+            });
+        } else if (key == "rotate") {
+            forEach(3, [&](Index vertex, Json const& entry) {
+                edit.rotations.push_back(
+                    {vertex, DirectionOf(key, entry, "axis"), NumberOf(key, entry, "degrees")});
+            });
+        } else {
+            Refuse(
+                fmt::format("key {} is not known; curvature, set_curvature, rotate, set_normal "
+                            "and filter are",
+                            TextScanner::Quote(key)));
+        }
+    }
+
+    void ReadFilter(Json const& value, CurvatureEdit& edit) const {
+        if (value == "polarise") {
+            edit.isPolarised = true;
+            return;
+        }
+        if (!value.is_object() || !value.contains("points") || value.size() != 1) {
+            Refuse(
+                fmt::format("filter is {}; 'polarise' is possible, or {{\"points\": [[x, y], "
+                            "...]}}",
+                            Show(value)));
+        }
+        double last = -1.0;
+        for (Json const& point : ListOf("points", value["points"])) {
+            bool const isPoint = point.is_array() && point.size() == 2 && point[0].is_number() &&
+                                 point[1].is_number();
+            if (!isPoint) Refuse(fmt::format("filter: {} is no point [x, y]", Show(point)));
+            double const x = point[0].get<double>();
+            if (!(x >= 0.0 && x <= 1.0) || x <= last) {
+                Refuse(
+                    fmt::format("filter: x of {} is not in [0, 1], or does not rise", Show(point)));
+            }
+            edit.filterPoints.push_back({x, point[1].get<double>()});
+            last = x;
+        }
+        if (edit.filterPoints.size() < 2) Refuse("filter: a curve needs two points at least");
+    }
+
     Json Parse(std::string_view text) const {
         auto const limitDepth = [&](int depth, Json::parse_event_t, Json&) {
             if (depth > kDeepest)
@@ -114,18 +154,20 @@ private:
         return entry[name].get<double>();
     }
 
-    std::array<double, 3> AxisOf(Json const& entry) const {
-        bool const isAxis =
-            entry.contains("axis") && entry["axis"].is_array() && entry["axis"].size() == 3;
-        std::array<double, 3> axis{};
-        for (size_t c = 0; isAxis && c < 3; ++c) {
-            Json const& number = entry["axis"][c];
-            axis[c] = number.is_number() ? number.get<double>() : 0.0;
+    std::array<double, 3> DirectionOf(std::string const& key, Json const& entry,
+                                      char const* name) const {
+        bool const isList =
+            entry.contains(name) && entry[name].is_array() && entry[name].size() == 3;
+        std::array<double, 3> direction{};
+        for (size_t c = 0; isList && c < 3; ++c) {
+            Json const& number = entry[name][c];
+            direction[c] = number.is_number() ? number.get<double>() : 0.0;
         }
-        if (!(std::hypot(axis[0], axis[1], axis[2]) > 0.0)) {
-            Refuse(fmt::format("'rotate': {} has no axis: three numbers, not all 0", Show(entry)));
+        if (!(std::hypot(direction[0], direction[1], direction[2]) > 0.0)) {
+            Refuse(fmt::format("'{}': {} has no {}: three numbers, not all 0", key, Show(entry),
+                               name));
         }
-        return axis;
+        return direction;
     }
 
     std::string const& _path;

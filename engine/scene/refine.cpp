@@ -6,6 +6,7 @@
 #include <span>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "engine/scene/scene_checks.h"
 #include "eval/differential/subdivide_values.h"
@@ -47,6 +48,25 @@ Primvar RefinePrimvar(Far::TopologyRefiner const& refiner, Primvar const& primva
     return fine;
 }
 
+/// Whether second eigenvalues of a rule, on triangles, leave no room for a tangent plane at an
+/// inner vertex of this valence: complex at 3 but for the original Butterfly's, which meet others
+/// there and from 8 on.
+bool IsRoughAt(int valence, far_ext::SubdivisionRule rule) {
+    if (valence == 3) return true;
+    return rule == far_ext::SubdivisionRule::OriginalButterfly && valence >= 8;
+}
+
+/// "vertices 3, 5, 8 and 12 more"
+std::string ListVertices(std::vector<Index> const& vertices) {
+    constexpr size_t kMostListed = 8;
+    std::span const listed = std::span(vertices).first(std::min(kMostListed, vertices.size()));
+    std::string list =
+        fmt::format("{} {}", vertices.size() == 1 ? "vertex" : "vertices", fmt::join(listed, ", "));
+    if (listed.size() < vertices.size())
+        list += fmt::format(" and {} more", vertices.size() - listed.size());
+    return list;
+}
+
 /// Refined vertices at their limit. Vertices without a face that has one stay.
 std::vector<double> MoveToLimit(Scene const& fine, Job& job) {
     job.Start("moving vertices to the limit");
@@ -78,6 +98,25 @@ std::unique_ptr<Far::TopologyRefiner> MakeUniformRefiner(far_ext::ControlMesh co
     return refiner;
 }
 
+void WarnOfRoughVertices(Model const& model, far_ext::TunedRule const& rule, Job& job) {
+    using far_ext::SubdivisionRule;
+    bool const isOriginal = rule.rule == SubdivisionRule::OriginalButterfly;
+    bool const isOfLoop =
+        rule.rule == SubdivisionRule::Interpolating && model.GetCage().scheme == Sdc::SCHEME_LOOP;
+    if (!isOriginal && !isOfLoop) return;
+    Level const& level = model.GetLevel();
+    std::vector<Index> rough;
+    for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
+        if (!level.IsVertexBoundary(vertex) &&
+            IsRoughAt(level.GetVertexEdges(vertex).size(), rule.rule))
+            rough.push_back(vertex);
+    }
+    if (rough.empty()) return;
+    job.Warn(fmt::format("{}: this `rule` is not smooth at valence {}: {}; butterfly and loop are",
+                         model.GetPath(), isOriginal ? "3 and from 8 on" : "3",
+                         ListVertices(rough)));
+}
+
 void InheritFromFaces(Model const& model, std::vector<Index> const& baseFaces, Scene& fine) {
     for (size_t kind = 0; kind < fine.groups.size(); ++kind) {
         FaceGroups const& groups = model.GetGroups()[kind];
@@ -105,6 +144,8 @@ Scene RefineAllButPositions(Model const& model, Far::TopologyRefiner const& refi
 }
 
 Scene RefineUniformly(Model const& model, RefineOptions const& options, Job& job) {
+    far_ext::CheckTension(options.rule);
+    WarnOfRoughVertices(model, options.rule, job);
     job.Start("refining topology");
     auto const refiner = MakeUniformRefiner(model.GetCage(), model.GetPath(), options.levels);
     Scene fine = RefineAllButPositions(model, *refiner, job);
@@ -114,8 +155,7 @@ Scene RefineUniformly(Model const& model, RefineOptions const& options, Job& job
         job.CheckStopped();
         fine.positions = eval::SubdivideValues<3>(*refiner, level, options.rule, fine.positions);
     }
-    if (options.toLimit && options.rule == far_ext::SubdivisionRule::Scheme)
-        fine.positions = MoveToLimit(fine, job);
+    if (options.toLimit && !options.rule.IsInterpolating()) fine.positions = MoveToLimit(fine, job);
     return fine;
 }
 

@@ -15,9 +15,9 @@ namespace limn::engine {
 struct RefineOptions {
     int levels = 1;        ///< 0 to 10
     bool toLimit = false;  ///< also moves the vertices (not the UVs) to their limit
-    /// Of the positions; Butterfly needs the Loop scheme, and its vertices are in the limit
-    /// already.
-    far_ext::SubdivisionRule rule = far_ext::SubdivisionRule::Scheme;
+    /// Of the positions. Both Butterflies need the Loop scheme, Kobbelt quads and the Catmull-Clark
+    /// scheme; vertices of all but the scheme's own rule are in the limit already.
+    far_ext::TunedRule rule{};
 };
 
 /// Refines a mesh uniformly by OpenSubdiv's rules, in double.
@@ -25,8 +25,9 @@ struct RefineOptions {
 /// The result has OpenSubdiv's vertex order, refined UVs and primvars, decayed creases and corners,
 /// holes and groups of the parents.
 ///
+/// \param job     told of vertices at which the rule is not smooth
 /// \throws Error  BadOption; TooLarge where the refined mesh would pass 2^31 indices; as
-///                far_ext::BuildButterfly
+///                far_ext::BuildSubdivisionRows
 /// \throws Stopped
 Scene RefineUniformly(Model const& model, RefineOptions const& options, Job& job);
 
@@ -36,6 +37,11 @@ Scene RefineUniformly(Model const& model, RefineOptions const& options, Job& job
 /// \throws Error  as RefineUniformly
 std::unique_ptr<Far::TopologyRefiner> MakeUniformRefiner(far_ext::ControlMesh const& cage,
                                                          std::string const& path, int levels);
+
+/// Warns of vertices whose valence a rule is not smooth at: for the original Butterfly 3, where
+/// there is no tangent plane, and 8 and more, where nearly none is left; for the interpolating rule
+/// of Loop's scheme 3.
+void WarnOfRoughVertices(Model const& model, far_ext::TunedRule const& rule, Job& job);
 
 /// All of RefineUniformly's result but the positions.
 Scene RefineAllButPositions(Model const& model, Far::TopologyRefiner const& refiner, Job& job);

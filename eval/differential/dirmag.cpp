@@ -85,7 +85,7 @@ std::vector<double> FindAngleNormals(Far::TopologyLevel const& level,
 }
 
 DirMag SplitDirMag(Far::TopologyLevel const& level, std::span<double const> positions,
-                   std::span<double const> deltas) {
+                   std::span<double const> deltas, double flat) {
     DirMag split{{}, FindAngleNormals(level, positions), 0.0};
     Points const points(deltas);
     double longest = 0.0;
@@ -99,7 +99,7 @@ DirMag SplitDirMag(Far::TopologyLevel const& level, std::span<double const> posi
         all += delta.squaredNorm();
         double const magnitude = along > 0.0 ? length : -length;
         split.magnitudes.push_back(magnitude);
-        if (length > kFlat * longest) directions[vertex] = delta / magnitude;
+        if (length > kFlat * longest && length > flat) directions[vertex] = delta / magnitude;
     }
     split.tangentialShare = all > 0.0 ? std::sqrt(tangential / all) : 0.0;
     return split;

@@ -29,12 +29,12 @@ constexpr double kDirMagLimit = 0.6;
 std::vector<double> FindAngleNormals(Far::TopologyLevel const& level,
                                      std::span<double const> positions);
 
-/// Splits by angle-weighted normals; where delta is 0, or below 1e-9 of the longest, the direction
-/// is that normal.
+/// Splits by angle-weighted normals; where delta is 0, below 1e-9 of the longest, or no longer than
+/// `flat`, the direction is that normal.
 ///
 /// Source  [Zhu11] Sec. 3.4
 DirMag SplitDirMag(Far::TopologyLevel const& level, std::span<double const> positions,
-                   std::span<double const> deltas);
+                   std::span<double const> deltas, double flat = 0.0);
 
 /// One step of subdivision: magnitudes by linear means, directions by weighted means on the sphere
 /// (Buss and Fillmore's, to 1e-14). Directions whose linear mean vanishes give way to the one of

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "eval/differential/refine_values.h"
-#include "far_ext/differential/butterfly.h"
 #include "far_ext/differential/subdivision_rows.h"
 
 namespace limn::eval {
@@ -10,9 +9,10 @@ namespace limn::eval {
 /// Values of level `level` - 1 to those of `level` by a rule, N doubles per vertex.
 template <size_t N>
 std::vector<double> SubdivideValues(Far::TopologyRefiner const& refiner, int level,
-                                    far_ext::SubdivisionRule rule, std::span<double const> coarse) {
-    if (rule == far_ext::SubdivisionRule::Scheme) return RefineValues<N>(refiner, level, coarse);
-    far_ext::SparseRows const rows = far_ext::BuildButterfly(refiner, level);
+                                    far_ext::TunedRule const& rule,
+                                    std::span<double const> coarse) {
+    if (!rule.IsInterpolating()) return RefineValues<N>(refiner, level, coarse);
+    far_ext::SparseRows const rows = far_ext::BuildSubdivisionRows(refiner, level, rule);
     std::vector<double> fine(rows.GetNumRows() * N);
     rows.Apply(coarse.data(), fine.data(), static_cast<int>(N));
     return fine;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "far_ext/differential/simple_edges.h"
 #include "far_ext/error.h"
 #include "far_ext/topology/boundary.h"
 
@@ -17,8 +18,25 @@ using Level = Far::TopologyLevel;
 
 class ButterflyRows {
 public:
-    explicit ButterflyRows(Level const& coarse) : _coarse(coarse) {}
+    enum class AtIrregular { Ring, RegularMask };
 
+    ButterflyRows(Level const& coarse, double tension, AtIrregular atIrregular)
+        : _coarse(coarse), _tension(tension), _atIrregular(atIrregular) {}
+
+    SparseRows Build() const {
+        // OpenSubdiv's order of a Loop refinement: vertices first, then edges.
+        SparseRows rows;
+        WeightRow row;
+        for (Index vertex = 0; vertex < _coarse.GetNumVertices(); ++vertex) {
+            row.Clear();
+            row.Add(vertex, 1.0);
+            rows.AddRow(row);
+        }
+        for (Index edge = 0; edge < _coarse.GetNumEdges(); ++edge) rows.AddRow(Make(edge));
+        return rows;
+    }
+
+private:
     /// The row of an edge's new vertex.
     WeightRow Make(Index edge) const {
         auto const ends = _coarse.GetEdgeVertices(edge);
@@ -38,18 +56,18 @@ public:
         return row;
     }
 
-private:
     /// Vertices of a boundary count as regular.
     bool IsIrregular(Index vertex) const {
-        return !_coarse.IsVertexBoundary(vertex) && _coarse.GetVertexEdges(vertex).size() != 6;
+        return _atIrregular == AtIrregular::Ring && !_coarse.IsVertexBoundary(vertex) &&
+               _coarse.GetVertexEdges(vertex).size() != 6;
     }
 
     void AddBoundaryRow(Index edge, WeightRow& row) const {
         for (Index end : _coarse.GetEdgeVertices(edge)) {
-            row.Add(end, 9.0 / 16);
+            row.Add(end, 0.5 + _tension);
             for (Index other : _coarse.GetVertexEdges(end)) {
                 if (other != edge && _coarse.IsEdgeBoundary(other))
-                    row.Add(GetOtherEnd(_coarse, other, end), -1.0 / 16);
+                    row.Add(GetOtherEnd(_coarse, other, end), -_tension);
             }
         }
     }
@@ -57,9 +75,9 @@ private:
     void AddRegularRow(Index edge, WeightRow& row) const {
         for (Index end : _coarse.GetEdgeVertices(edge)) row.Add(end, 0.5);
         for (Index face : _coarse.GetEdgeFaces(edge)) {
-            row.Add(FindOpposite(face, edge), 1.0 / 8);
+            row.Add(FindOpposite(face, edge), 2.0 * _tension);
             for (Index side : _coarse.GetFaceEdges(face)) {
-                if (side != edge) AddWing(face, side, -1.0 / 16, row);
+                if (side != edge) AddWing(face, side, -_tension, row);
             }
         }
     }
@@ -102,35 +120,29 @@ private:
     }
 
     Level const& _coarse;
+    double const _tension;  // w: 2w on opposite vertices, -w on wings
+    AtIrregular const _atIrregular;
 };
 
-}  // namespace
-
-SparseRows BuildButterfly(Far::TopologyRefiner const& refiner, int level) {
+SparseRows BuildRows(Far::TopologyRefiner const& refiner, int level, double tension,
+                     ButterflyRows::AtIrregular atIrregular) {
     if (refiner.GetSchemeType() != Sdc::SCHEME_LOOP) {
         throw Error(ErrorCode::Unsupported,
                     "the Butterfly rule needs triangles and the scheme loop");
     }
     Level const coarse = refiner.GetLevel(level - 1);
-    CheckBoundary(coarse);
-    for (Index edge = 0; edge < coarse.GetNumEdges(); ++edge) {
-        int const count = coarse.GetEdgeFaces(edge).size();
-        if (count <= 2 && !coarse.IsEdgeNonManifold(edge)) continue;
-        throw Error(
-            ErrorCode::BadMesh,
-            fmt::format("edge {} has {} faces; Butterfly needs 1 or 2, wound alike", edge, count));
-    }
-    // OpenSubdiv's order of a Loop refinement: vertices first, then edges.
-    SparseRows rows;
-    WeightRow row;
-    for (Index vertex = 0; vertex < coarse.GetNumVertices(); ++vertex) {
-        row.Clear();
-        row.Add(vertex, 1.0);
-        rows.AddRow(row);
-    }
-    ButterflyRows const butterfly(coarse);
-    for (Index edge = 0; edge < coarse.GetNumEdges(); ++edge) rows.AddRow(butterfly.Make(edge));
-    return rows;
+    RequireSimpleEdges(coarse, "Butterfly");
+    return ButterflyRows(coarse, tension, atIrregular).Build();
+}
+
+}  // namespace
+
+SparseRows BuildButterfly(Far::TopologyRefiner const& refiner, int level) {
+    return BuildRows(refiner, level, 1.0 / 16, ButterflyRows::AtIrregular::Ring);
+}
+
+SparseRows BuildOriginalButterfly(Far::TopologyRefiner const& refiner, int level, double tension) {
+    return BuildRows(refiner, level, tension, ButterflyRows::AtIrregular::RegularMask);
 }
 
 }  // namespace limn::far_ext

@@ -23,4 +23,15 @@ namespace limn::far_ext {
 /// Source    [Zhu11] Sec. 3.2 (modified Butterfly)
 SparseRows BuildButterfly(Far::TopologyRefiner const& refiner, int level);
 
+/// The original Butterfly, one step: the same mask at every valence.
+///
+/// Shape     that of BuildButterfly
+/// Weights   add up to 1 in each row. Edges 1/2 on both ends, 2w on both opposite vertices, -w on
+///           the four wings; boundary edges (-w, 1/2 + w, 1/2 + w, -w). w = 1/16 is the modified
+///           rule where valences are 6.
+/// \param tension  w
+/// \throws Error   as BuildButterfly
+/// Source    [Zhu11] Sec. 3.2 (Butterfly)
+SparseRows BuildOriginalButterfly(Far::TopologyRefiner const& refiner, int level, double tension);
+
 }  // namespace limn::far_ext

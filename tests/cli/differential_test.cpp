@@ -131,8 +131,32 @@ TEST_F(CliDifferential, UnmetCoordinatesAreStatus4) {
 TEST_F(CliDifferential, TheEditFileStandsInTheHelp) {
     Outcome const help = Limn({"refine", "--help"});
     for (char const* key : {"\"curvature\"", "\"factor\"", "\"rotate\"", "\"axis\"", "\"degrees\"",
-                            "\"filter\"", "\"polarise\""})
+                            "\"filter\"", "\"polarise\"", "\"set_curvature\"", "\"mean\"",
+                            "\"set_normal\"", "\"normal\"", "\"points\""})
         EXPECT_TRUE(Contains(help.out, key)) << key;
+}
+
+// A vertex a list names is there once per kind, with what was asked for and what came of it.
+TEST_F(CliDifferential, EditsAreReportedAsMeasured) {
+    std::string const edit = folder.Write("edit.json", R"({"set_normal": [{"vertex": 2,
+        "normal": [0, 3, 4]}], "curvature": [{"vertex": 5, "factor": 2}, {"vertex": 5, "factor": 0.5}],
+        "set_curvature": [{"vertex": 4, "mean": 1.5}]})");
+    auto const outcome =
+        Refine(Mesh("icosa"), {"--space", "differential", "--rule", "loop", "--edit", edit});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    json const edits = Report()["edits"];
+    ASSERT_EQ(edits.size(), 3u);
+    EXPECT_EQ(edits[0]["vertex"], 4);
+    EXPECT_EQ(edits[0]["kind"], "mean");
+    EXPECT_EQ(edits[0]["asked"], 1.5);
+    EXPECT_GT(edits[0]["reached"], 0.1);
+    EXPECT_EQ(edits[1]["vertex"], 5);
+    EXPECT_EQ(edits[2]["kind"], "normal");
+    EXPECT_NEAR(edits[2]["asked"][2].get<double>(), 0.8, 1e-15);
+    EXPECT_TRUE(edits[2]["reached"].is_number());
+    for (char const* stage : {"coordinates", "subdivision", "reconstruction"})
+        EXPECT_GE(Report()["stages"][stage], 0.0) << stage;
+    EXPECT_EQ(Report()["stages"]["reconstruction"], Report()["solve_seconds"]);
 }
 
 TEST_F(CliDifferential, DeepEditsAreStatus3InOneShortLine) {
@@ -186,6 +210,41 @@ TEST_F(CliDifferential, MeasureTellsAllAndWritesWhatIsAskedFor) {
         Limn({"measure", Mesh("icosa"), "--picture", "-o", folder / "a", "--view", "0,0,0"}), 2,
         "--view 0,0,0 is no direction");
     ExpectError(Limn({"measure", folder / "none.obj"}), 5, "none.obj");
+}
+
+/// limn measure -o NAME with more words; which of both pictures it has written.
+class CliMeasurePicture : public CliDifferential {
+protected:
+    std::vector<std::string> ListPictures(std::string const& name, Words const& more) const {
+        auto const outcome =
+            Limn(Words{"measure", "--surface", "mesh", "-o", folder / name} + more);
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        std::vector<std::string> written;
+        for (std::string const map : {"mean", "gaussian"}) {
+            if (std::filesystem::exists(folder / name + "." + map + ".png")) written.push_back(map);
+        }
+        return written;
+    }
+};
+
+TEST_F(CliMeasurePicture, IsOfTheCurvatureThatIsNamed) {
+    std::string const mesh = Mesh("icosa");
+    using Names = std::vector<std::string>;
+    EXPECT_EQ(ListPictures("a", {mesh, "--picture"}), Names{"mean"});
+    EXPECT_EQ(ListPictures("b", {mesh, "--picture", "mean"}), Names{"mean"});
+    EXPECT_EQ(ListPictures("c", {mesh, "--picture", "gaussian"}), Names{"gaussian"});
+    EXPECT_EQ(ListPictures("d", {"--picture=gaussian", mesh}), Names{"gaussian"});
+    EXPECT_EQ(ListPictures("e", {"--picture", mesh}), Names{"mean"});  // no word of the flag's
+    EXPECT_EQ(ListPictures("f", {mesh}), Names{});
+    EXPECT_EQ(test::ReadText(folder / "a.mean.png"), test::ReadText(folder / "b.mean.png"));
+    EXPECT_NE(test::ReadText(folder / "a.mean.png"), test::ReadText(folder / "c.gaussian.png"));
+}
+
+TEST_F(CliMeasurePicture, OtherWordsAreStatus2) {
+    ExpectError(Limn({"measure", Mesh("icosa"), "-o", folder / "a", "--picture=gauss"}), 2,
+                "--picture: 'gauss' is not one of mean, gaussian");
+    ExpectError(Limn({"measure", Mesh("icosa"), "-o", folder / "a", "--picture", "gauss"}), 2,
+                "'gauss' is one argument too many");
 }
 
 }  // namespace

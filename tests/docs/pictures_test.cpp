@@ -103,7 +103,8 @@ std::set<std::string> ListMade(Words const& command) {
     if (picture.ends_with(".png")) made.insert(picture);
     std::string const verb = command.at(1);
     if (verb == "measure") {
-        if (Has(command, "--picture")) made.insert(output + ".mean.png");
+        std::string const map = picture == "gaussian" ? picture : "mean";
+        if (Has(command, "--picture")) made.insert(fmt::format("{}.{}.png", output, map));
         if (Has(command, "--highlight")) made.insert(output + ".highlight.png");
     }
     if (verb != "bake") return made;

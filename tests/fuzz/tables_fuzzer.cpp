@@ -70,6 +70,11 @@ void ReadEdit(std::string const& path) {
     auto const edit = engine::ReadCurvatureEdit(path);
     for (auto const& factor : edit.factors)
         Require(std::isfinite(factor.factor), "factors are numbers");
+    for (auto const& mean : edit.means) Require(std::isfinite(mean.mean), "means are numbers");
+    for (auto const& [vertex, normal] : edit.normals)
+        Require(std::hypot(normal[0], normal[1], normal[2]) > 0.0, "a normal has a direction");
+    for (size_t i = 1; i < edit.filterPoints.size(); ++i)
+        Require(edit.filterPoints[i][0] > edit.filterPoints[i - 1][0], "a filter's points rise");
     for (auto const& rotation : edit.rotations) {
         double const length = std::hypot(rotation.axis[0], rotation.axis[1], rotation.axis[2]);
         Require(std::isfinite(rotation.degrees) && length > 0.0, "a rotation has an axis");

@@ -129,11 +129,22 @@ void Evaluate(Model const& model, Choices& choices, Job& job) {
     }
 }
 
+far_ext::TunedRule ChooseRule(Choices& choices) {
+    using enum far_ext::SubdivisionRule;
+    if (!choices.TakeOneIn(4)) return Scheme;
+    return choices.Pick<far_ext::TunedRule>({Butterfly,
+                                             OriginalButterfly,
+                                             {OriginalButterfly, 0.1},
+                                             Kobbelt,
+                                             {Kobbelt, 2.0},
+                                             Interpolating});
+}
+
 void Refine(Model const& model, Choices& choices, Job& job) {
     engine::RefineOptions options{.levels = choices.TakeInt(0, 2), .toLimit = choices.TakeBool()};
-    if (choices.TakeOneIn(4)) options.rule = far_ext::SubdivisionRule::Butterfly;
+    options.rule = ChooseRule(choices);
     Scene const fine = engine::RefineUniformly(model, options, job);
-    RequireInHull(model, fine.positions);
+    if (!options.rule.IsInterpolating()) RequireInHull(model, fine.positions);
     RequireMesh(fine);
 }
 
@@ -300,7 +311,7 @@ void MeasureSurface(Model const& model, Choices& choices, Job& job) {
 
 void RefineInDifferentialSpace(Model const& model, Choices& choices, Job& job) {
     engine::DifferentialOptions options{.levels = choices.TakeInt(0, 2)};
-    if (choices.TakeOneIn(4)) options.rule = far_ext::SubdivisionRule::Butterfly;
+    options.rule = ChooseRule(choices);
     options.laplacian = choices.Pick(
         {engine::Laplacian::Combinatorial, engine::Laplacian::Cotangent, engine::Laplacian::Mesh});
     options.dirMagLevels = choices.TakeInt(0, 1);
@@ -313,6 +324,11 @@ void RefineInDifferentialSpace(Model const& model, Choices& choices, Job& job) {
     if (choices.TakeOneIn(4))
         options.edit.rotations.push_back({choices.TakeInt(0, numVertices), {0, 0, 1}, 30.0});
     options.edit.isPolarised = choices.TakeOneIn(4);
+    if (choices.TakeOneIn(4))
+        options.edit.means.push_back({choices.TakeInt(0, numVertices), 9.0 * choices.TakeSigned()});
+    if (choices.TakeOneIn(4))
+        options.edit.normals.push_back({choices.TakeInt(0, numVertices), {0.3, 0, 1}});
+    if (choices.TakeOneIn(4)) options.edit.filterPoints = {{0.0, choices.TakeShare()}, {1.0, 1.0}};
     auto const result = engine::RefineDifferentially(model, options, job);
     RequireMesh(result.mesh);
 }

@@ -104,13 +104,14 @@ TEST(Differential, AllLevelsInSpaceChangeNothing) {
     EXPECT_LT(test::LargestDifference(spatial.positions, result.positions), 1e-9);
 }
 
-/// Thin-plate energies of differential over spatial Butterfly: the mean's ratio, and the
-/// integral's.
-std::array<double, 2> CompareEnergies(engine::Scene const& scene) {
-    auto const report = RefineAndReport(scene, 3, {.rule = SubdivisionRule::Butterfly}).report;
+/// Thin-plate energies of a rule in differential space over those in space: the mean's ratio, and
+/// the integral's.
+std::array<double, 2> CompareEnergies(engine::Scene const& scene,
+                                      far_ext::TunedRule const& rule = SubdivisionRule::Butterfly) {
+    auto const report = RefineAndReport(scene, 3, {.rule = rule}).report;
     engine::Job job;
-    auto const spatial = engine::RefineUniformly(
-        engine::Model::Build(scene), {.levels = 3, .rule = SubdivisionRule::Butterfly}, job);
+    auto const spatial =
+        engine::RefineUniformly(engine::Model::Build(scene), {.levels = 3, .rule = rule}, job);
     auto const refiner = far_ext::CreateRefiner(spatial.cage);
     auto const energy = eval::FindThinPlateEnergy(
         eval::MeasureMeshCurvature(refiner->GetLevel(0), spatial.positions));
@@ -135,6 +136,22 @@ TEST(Differential, ButterflyGetsMuchSmootherOnIrregularMeshes) {
     }
 }
 
+// Rules that keep vertices ripple in space; approximating ones have less to gain.
+TEST(Differential, RulesThatKeepVerticesGainMost) {
+    auto scene = test::LoadAsset("tri/spot_low_resolution.obj");
+    scene.cage.scheme = Sdc::SCHEME_LOOP;
+    double const ofLoop = CompareEnergies(scene, SubdivisionRule::Scheme)[1];
+    for (far_ext::TunedRule const& rule :
+         {far_ext::TunedRule(SubdivisionRule::OriginalButterfly),
+          far_ext::TunedRule(SubdivisionRule::OriginalButterfly, 1.0 / 32),
+          far_ext::TunedRule(SubdivisionRule::Interpolating)})
+        EXPECT_LT(CompareEnergies(scene, rule)[1], 0.85 * ofLoop);
+    auto const quads = test::LoadAsset("tri/torus_quad.off");
+    double const ofCatmark = CompareEnergies(quads, SubdivisionRule::Scheme)[1];
+    for (auto rule : {SubdivisionRule::Kobbelt, SubdivisionRule::Interpolating})
+        EXPECT_LT(CompareEnergies(quads, rule)[1], 0.95 * ofCatmark);
+}
+
 // An edit that changes nothing changes nothing; every other kind does, and leaves finite positions.
 TEST(Differential, EditsAct) {
     auto const scene = LoadBumpy();
@@ -144,11 +161,14 @@ TEST(Differential, EditsAct) {
     none.edit.rotations = {{3, {0, 0, 2}, 360.0}};
     EXPECT_LT(test::LargestDifference(plain.positions, Refine(scene, 2, none).positions, true),
               1e-7);
-    for (int kind = 0; kind < 3; ++kind) {
+    for (int kind = 0; kind < 6; ++kind) {
         DifferentialOptions options;
         if (kind == 0) options.edit.factors = {{3, 1.5}};
         if (kind == 1) options.edit.rotations = {{3, {1, 2, 3}, 40.0}};
         if (kind == 2) options.edit.isPolarised = true;
+        if (kind == 3) options.edit.means = {{3, 0.2}};
+        if (kind == 4) options.edit.normals = {{3, {1, 2, 3}}};
+        if (kind == 5) options.edit.filterPoints = {{0.0, 0.0}, {0.5, 0.1}, {1.0, 1.0}};
         auto const edited = Refine(scene, 2, options);
         EXPECT_GT(test::LargestDifference(plain.positions, edited.positions, true), 1e-3) << kind;
         EXPECT_TRUE(test::AreFinite(edited.positions)) << kind;
@@ -254,6 +274,10 @@ TEST(EditReader, WhatItCannotUseIsNamed) {
             R"({"curvature": [{"vertex": 3, "factor": 1.5}], "rotate": [{"vertex": 7, "axis": [0,0,1], "degrees": 20}],
                          "filter": "polarise"})"),
         "");
+    EXPECT_EQ(refuse(R"({"set_curvature": [{"vertex": 3, "mean": -0.5}],
+                         "set_normal": [{"vertex": 7, "normal": [0,0,2]}],
+                         "filter": {"points": [[0, 0], [0.5, 0.2], [1, 1]]}})"),
+              "");
     EXPECT_EQ(refuse("{}"), "");
     EXPECT_NE(refuse("{\"curvature\": ").find("no JSON"), std::string::npos);
     EXPECT_NE(refuse(R"({"curve": []})").find("key 'curve' is not known"), std::string::npos);
@@ -269,6 +293,11 @@ TEST(EditReader, WhatItCannotUseIsNamed) {
         refuse(R"({"curvature": [{"vertex": 1, "factor": 1, "size": 2}]})").find("unknown keys"),
         std::string::npos);
     EXPECT_NE(refuse(R"({"curvature": 7})").find("no list"), std::string::npos);
+    EXPECT_NE(refuse(R"({"set_curvature": [{"vertex": 1, "factor": 1}]})").find("no number 'mean'"),
+              std::string::npos);
+    EXPECT_NE(
+        refuse(R"({"set_normal": [{"vertex": 1, "normal": [0,0,0]}]})").find("no normal of three"),
+        std::string::npos);
     EXPECT_NE(refuse(R"({"filter": )" + std::string(60000, '[') + std::string(60000, ']') + "}")
                   .find("nested more than 4 deep"),
               std::string::npos);
@@ -279,6 +308,27 @@ TEST(EditReader, WhatItCannotUseIsNamed) {
     }
     EXPECT_NE(refuse("{\n\"curvature\": [}").find("line 2 is no JSON"), std::string::npos);
     EXPECT_NE(refuse(R"({"curvature": 1e999})").find("a number is too large"), std::string::npos);
+}
+
+TEST(EditReader, FiltersThatAreNoCurveAreNamed) {
+    test::TemporaryFolder const folder;
+    for (auto const& [filter, says] : std::vector<std::pair<std::string, std::string>>{
+             {R"({"points": [[0, 0]]})", "needs two points"},
+             {R"({"points": []})", "needs two points"},
+             {R"({"points": [[0, 0], [0, 1]]})", "x of [0,1] is not in [0, 1], or does not rise"},
+             {R"({"points": [[0.5, 0], [0.2, 1]]})", "does not rise"},
+             {R"({"points": [[0, 0], [1.5, 1]]})", "is not in [0, 1]"},
+             {R"({"points": [[0, 0], [1]]})", "[1] is no point"},
+             {R"({"points": [[0, 0], [1, "a"]]})", "is no point"},
+             {R"({"points": 3})", "'points' is no list"},
+             {R"({"points": [[0, 0], [1, 1]], "more": 1})", "'polarise' is possible, or"},
+             {"{}", "'polarise' is possible, or"}}) {
+        std::string const path = folder.Write("edit.json", "{\"filter\": " + filter + "}");
+        auto const error = test::CatchError([&] { engine::ReadCurvatureEdit(path); });
+        ASSERT_TRUE(error) << filter;
+        EXPECT_EQ(error->GetCode(), ErrorCode::BadMesh);
+        EXPECT_NE(std::string(error->what()).find(says), std::string::npos) << error->what();
+    }
 }
 
 TEST(EditReader, DeepAndLongValuesAreRefusedInAShortLine) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "far_ext/differential/butterfly.h"
 
+#include <map>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 
 #include "support/errors.h"
 #include "support/fit_meshes.h"
+#include "support/form_meshes.h"
 #include "support/refined.h"
 
 namespace limn {
@@ -54,6 +56,53 @@ TEST(Butterfly, QuadraticsAreMetOnARegularGrid) {
     for (Index edge : coarse.GetVertexEdges(0)) {  // edges whose whole stencil lies inside
         double const* const p = &fine[3 * static_cast<size_t>(coarse.GetEdgeChildVertex(edge))];
         EXPECT_NEAR(p[2], 0.5 * p[0] * p[0] + 0.1 * p[1] * p[1], 1e-14);
+    }
+}
+
+// The same eight points at every valence, whatever w: 1/2, 2w, -w.
+TEST(Butterfly, TheOriginalHasOneMaskAtAllValences) {
+    constexpr double w = 0.03;
+    for (int n : {5, 7, 12}) {
+        auto const scene = test::MakeFan(n, Sdc::SCHEME_LOOP, 0.3, 0.2);
+        auto const refiner = test::MakeRefiner(scene, 1);
+        auto const coarse = refiner->GetLevel(0);
+        auto const rows = far_ext::BuildOriginalButterfly(*refiner, 1, w);
+        for (Index edge : coarse.GetVertexEdges(0)) {
+            Index const child = coarse.GetEdgeChildVertex(edge);
+            std::map<double, int> counts;
+            for (int k = rows.offsets[child]; k < rows.offsets[child + 1]; ++k)
+                ++counts[rows.weights[k]];
+            EXPECT_EQ(counts, (std::map<double, int>{{0.5, 2}, {2 * w, 2}, {-w, 4}}));
+        }
+    }
+}
+
+// Where all valences are 6 both rules are one, boundaries included.
+TEST(Butterfly, TheOriginalIsTheModifiedOneOnRegularMeshes) {
+    for (auto const& scene :
+         {test::MakeTriangleTorus(7, 6), test::MakeLattice(5, 4, Sdc::SCHEME_LOOP)}) {
+        auto const refiner = test::MakeRefiner(scene, 1);
+        EXPECT_EQ(
+            test::Apply(far_ext::BuildOriginalButterfly(*refiner, 1, 1.0 / 16), scene.positions),
+            test::Apply(far_ext::BuildButterfly(*refiner, 1), scene.positions));
+    }
+}
+
+// (-w, 1/2 + w, 1/2 + w, -w) along the boundary: a parabola's height at the middle of an edge
+// of length 1 is 1/4 - 4w too high, the same for all of them.
+TEST(Butterfly, TheOriginalsBoundariesHaveTheTension) {
+    auto scene = test::MakeLattice(5, 4, Sdc::SCHEME_LOOP);
+    for (size_t i = 0; i < scene.positions.size(); i += 3)
+        scene.positions[i + 2] = scene.positions[i] * scene.positions[i];
+    auto const refiner = test::MakeRefiner(scene, 1);
+    for (double w : {0.0, 1.0 / 32, 1.0 / 8}) {
+        auto const fine =
+            test::Apply(far_ext::BuildOriginalButterfly(*refiner, 1, w), scene.positions);
+        auto const coarse = refiner->GetLevel(0);
+        Index const edge = coarse.FindEdge(2, 3);
+        double const* const p = &fine[3 * static_cast<size_t>(coarse.GetEdgeChildVertex(edge))];
+        EXPECT_DOUBLE_EQ(p[0], 2.5);
+        EXPECT_DOUBLE_EQ(p[2], 2.5 * 2.5 + 0.25 - 4.0 * w);
     }
 }
 
