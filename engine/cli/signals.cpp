@@ -93,9 +93,8 @@ void WatchForSignals() {
     }
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
-    // A library may replace a handler while it works: METIS puts one on SIGTERM that is for its own
-    // thread, and for a signal that another thread gets it jumps to nowhere. Signals that all
-    // threads block, as they inherit it from this one, come to no handler.
+    // A library may replace a handler while it works, by one that is for its own thread alone.
+    // Signals that all threads block, as they inherit it from this one, come to no handler.
     ::pthread_sigmask(SIG_BLOCK, &watched, nullptr);
     try {
         std::thread(TakeSignals, watched).detach();

@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>  // Eigen's MetisSupport needs it
 
-#include <Eigen/MetisSupport>
 #include <Eigen/SparseCholesky>
 
+#include "eval/forms/dissection_ordering.h"
 #include "eval/forms/tree_cotree.h"
 #include "far_ext/error.h"
 #include "far_ext/forms/form_operators.h"
@@ -64,7 +63,7 @@ public:
 private:
     std::vector<Index> _places;
     Eigen::VectorXd _right;
-    Eigen::SimplicialLDLT<Matrix, Eigen::Lower, Eigen::MetisOrdering<int>> _solver;
+    Eigen::SimplicialLDLT<Matrix, Eigen::Lower, DissectionOrdering> _solver;
 };
 
 FieldDesigner::~FieldDesigner() = default;

@@ -4,19 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <iostream>  // Eigen's MetisSupport needs it
 #include <memory>
 #include <numeric>
 #include <optional>
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/MetisSupport>
 #include <Eigen/SparseCholesky>
 #include <fmt/format.h>
 #include <opensubdiv/far/topologyDescriptor.h>
 #include <opensubdiv/far/topologyRefinerFactory.h>
 
 #include "eval/differential/refine_values.h"
+#include "eval/forms/dissection_ordering.h"
 #include "eval/forms/vertex_covectors.h"
 #include "far_ext/error.h"
 #include "far_ext/forms/face_vectors.h"
@@ -237,7 +236,7 @@ private:
     Wishes _wishes;
     ColumnMatrix _normal;  // of the wishes
     RowMatrix _inflow, _curl;
-    Eigen::SimplicialLDLT<ColumnMatrix, Eigen::Lower, Eigen::MetisOrdering<int>> _solver;
+    Eigen::SimplicialLDLT<ColumnMatrix, Eigen::Lower, DissectionOrdering> _solver;
     bool _isOrdered = false;
 };
 
