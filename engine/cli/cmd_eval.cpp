@@ -5,16 +5,18 @@
 #include "engine/cli/names.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/evaluate/evaluate.h"
+#include "engine/evaluate/field_values.h"
 #include "engine/evaluate/frames.h"
 #include "engine/evaluate/place_table.h"
 #include "engine/io/atomic_file.h"
+#include "engine/io/edge_values.h"
 
 namespace limn::cli {
 
 namespace {
 
 struct EvalArguments {
-    std::string mesh, places, output, frames;
+    std::string mesh, places, output, frames, field;
     std::optional<eval::EvaluatorKind> evaluator;
 };
 
@@ -38,7 +40,8 @@ void EvaluateFrames(EvalArguments const& a, engine::Model const& model,
 int Run(EvalArguments const& a, Context& context) {
     CommonOptions const& common = context.GetCommon();
     context.KeepStdoutForData(a.output.empty());
-    context.KeepApart({{"MESH", a.mesh}, {"--at", a.places}}, {{"-o", a.output}});
+    context.KeepApart({{"MESH", a.mesh}, {"--at", a.places}, {"--field", a.field}},
+                      {{"-o", a.output}});
     auto const model = context.Load(a.mesh);
     engine::Extent const extent = engine::FindExtent(model.GetPositions());
     Precision const enough = engine::FindTablePrecision(extent);
@@ -60,10 +63,15 @@ int Run(EvalArguments const& a, Context& context) {
                                      context.GetJob());
     });
     context.GetReport()["places_without_limit"] = values.CountWithoutLimit();
+    std::vector<double> field;
+    if (!a.field.empty())
+        field = engine::EvaluateField(
+            model, places.GetPlaces(), engine::ReadEdgeValues(a.field, model.GetLevel()),
+            engine::ChooseFieldLevels(model), context.GetJob());
     context.GetJob().Start("writing " + (a.output.empty() ? "stdout" : a.output));
     Precision const precision = common.precision.value_or(enough);
     context.GetReport()["precision_written"] = kPrecisionWords.GetWord(precision);
-    std::string const text = engine::FormatValues(places.GetPlaces(), values, precision);
+    std::string const text = engine::FormatValues(places.GetPlaces(), values, precision, field);
     if (a.output.empty())
         PrintData(text);
     else
@@ -88,6 +96,10 @@ Verb AddEval(CLI::App& app) {
                 "the same places in every frame: a folder of meshes, or a file name with {frame}; "
                 "MESH gives topology and tags")
             ->needs(output);
+    verb->add_option("--field", a->field,
+                     "CSV v0,v1,value: a field along edges of MESH; columns fx,fy,fz have its "
+                     "limit's vectors")
+        ->excludes(frames);
     AddWordOption(*verb, "--evaluator", a->evaluator, eval::kEvaluatorWords,
                   "apply the frames' table in float: simd (limn's), osd-cpu or osd-omp "
                   "(OpenSubdiv's); default: in double")
