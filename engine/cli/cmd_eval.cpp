@@ -7,16 +7,18 @@
 #include "engine/cli/options/far_limit_option.h"
 #include "engine/cli/options/option_rules.h"
 #include "engine/evaluate/evaluate.h"
+#include "engine/evaluate/field_values.h"
 #include "engine/evaluate/frames.h"
 #include "engine/evaluate/place_table.h"
 #include "engine/io/atomic_file.h"
+#include "engine/io/edge_values.h"
 
 namespace limn::cli {
 
 namespace {
 
 struct EvalArguments {
-    std::string mesh, places, output, frames;
+    std::string mesh, places, output, frames, field;
     FarLimitArguments far;
 };
 
@@ -67,7 +69,8 @@ int Run(EvalArguments const& a, CLI::App const& verb, Context& context) {
     CommonOptions const& common = context.GetCommon();
     auto const evaluator = MakeEvaluator(a.far.evaluator, common.precision);
     context.KeepStdoutForData(a.output.empty());
-    context.KeepApart({{"MESH", a.mesh}, {"--at", a.places}}, {{"-o", a.output}});
+    context.KeepApart({{"MESH", a.mesh}, {"--at", a.places}, {"--field", a.field}},
+                      {{"-o", a.output}});
     auto const model = context.Load(a.mesh);
     engine::Extent const extent = engine::FindExtent(model.GetPositions());
     Precision const enough = engine::FindTablePrecision(extent);
@@ -89,10 +92,15 @@ int Run(EvalArguments const& a, CLI::App const& verb, Context& context) {
         places, [&] { return Evaluate(a, model, places, evaluator.get(), context); });
     if (evaluator) context.GetReport()["evaluator"] = DescribeEvaluator(*evaluator);
     context.GetReport()["places_without_limit"] = values.CountWithoutLimit();
+    std::vector<double> field;
+    if (!a.field.empty())
+        field = engine::EvaluateField(model, places.GetPlaces(),
+                                      engine::ReadEdgeValues(a.field, model.GetLevel()),
+                                      engine::ChooseFieldLevels(model), context.GetJob());
     context.GetJob().Start("writing " + (a.output.empty() ? "stdout" : a.output));
     Precision const precision = common.precision.value_or(enough);
     context.GetReport()["precision_written"] = kPrecisionWords.GetWord(precision);
-    std::string const text = engine::FormatValues(places.GetPlaces(), values, precision);
+    std::string const text = engine::FormatValues(places.GetPlaces(), values, precision, field);
     if (a.output.empty())
         PrintData(text);
     else
@@ -111,11 +119,16 @@ Verb AddEval(CLI::App& app) {
     auto* const output =
         verb->add_option("-o,--output", a->output,
                          "CSV to write (default stdout); with --frames a name with {frame}");
-    verb->add_option(
-            "--frames", a->frames,
-            "the same places in every frame: a folder of meshes, or a file name with {frame}; "
-            "MESH gives topology and tags")
-        ->needs(output);
+    auto* const frames =
+        verb->add_option(
+                "--frames", a->frames,
+                "the same places in every frame: a folder of meshes, or a file name with {frame}; "
+                "MESH gives topology and tags")
+            ->needs(output);
+    verb->add_option("--field", a->field,
+                     "CSV v0,v1,value: a field along edges of MESH; columns fx,fy,fz have its "
+                     "limit's vectors")
+        ->excludes(frames);
     AddEvaluatorOption(*verb, a->far.evaluator, "the table of places, or far's,");
     AddFarLimitOptions(*verb, a->far, "in place of the limit");
     verb->footer(

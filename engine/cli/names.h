@@ -28,6 +28,10 @@ inline constexpr auto kMeasuredSurfaceWords = MakeEnumWords<engine::MeasuredSurf
 inline constexpr auto kAtBoundaryWords = MakeEnumWords<eval::AtBoundary>(
     "atBoundary", {{eval::AtBoundary::Tangent, "tangent"}, {eval::AtBoundary::Normal, "normal"}});
 
+/// Which way streamlines run from their seeds.
+inline constexpr auto kIsForwardOnlyWords =
+    MakeEnumWords<bool>("isForwardOnly", {{false, "both"}, {true, "forward"}});
+
 // ---- refine
 
 /// What is subdivided: positions or differential coordinates.

@@ -49,14 +49,15 @@ Precision FindTablePrecision(Extent const& mesh) {
                                                                    : Precision::Double;
 }
 
-std::string FormatValues(PlaceArrays const& places, LimitValues const& values,
-                         Precision precision) {
-    std::string text = "face,s,t,px,py,pz,nx,ny,nz,mean,gaussian,k1,k2,d1x,d1y,d1z\n";
+std::string FormatValues(PlaceArrays const& places, LimitValues const& values, Precision precision,
+                         std::span<double const> field) {
+    std::string text = "face,s,t,px,py,pz,nx,ny,nz,mean,gaussian,k1,k2,d1x,d1y,d1z";
+    text += field.empty() ? "\n" : ",fx,fy,fz\n";
     int const digits = precision == Precision::Double ? 17 : kShortDigits;
     auto const append = [&](double value) {
         fmt::format_to(std::back_inserter(text), ",{:.{}g}", value, digits);
     };
-    auto const appendVector = [&](std::vector<double> const& vectors, size_t i) {
+    auto const appendVector = [&](std::span<double const> vectors, size_t i) {
         for (size_t c = 3 * i; c < 3 * i + 3; ++c) append(vectors[c]);
     };
     for (size_t i = 0; i < places.faces.size(); ++i) {
@@ -67,6 +68,7 @@ std::string FormatValues(PlaceArrays const& places, LimitValues const& values,
         for (auto const* column : {&values.mean, &values.gaussian, &values.k1, &values.k2})
             append((*column)[i]);
         appendVector(values.directions, i);
+        if (!field.empty()) appendVector(field, i);
         text += '\n';
     }
     return text;

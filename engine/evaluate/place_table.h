@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,8 @@ Precision FindTablePrecision(Extent const& mesh);
 /// CSV text of places and their values, one row per place.
 ///
 /// \param precision  float: 9 significant digits, double: 17
-std::string FormatValues(PlaceArrays const& places, LimitValues const& values, Precision precision);
+/// \param field      three numbers per place for the columns fx,fy,fz; none: without them
+std::string FormatValues(PlaceArrays const& places, LimitValues const& values, Precision precision,
+                         std::span<double const> field = {});
 
 }  // namespace limn::engine

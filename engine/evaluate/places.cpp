@@ -49,6 +49,17 @@ PlaceError::PlaceError(size_t place, std::string reason)
       _place(place),
       _reason(std::move(reason)) {}
 
+std::array<double, 2> FindCoordinates(Model const& model, eval::SurfacePlace const& place) {
+    auto const& cage = model.GetCage();
+    Bfr::Parameterization const parameters(cage.scheme, cage.faceSizes[place.face]);
+    std::array<double, 2> coordinates{place.s, place.t};
+    if (parameters.HasSubFaces()) {
+        std::array<double, 2> const local = coordinates;
+        parameters.ConvertNormalizedSubFaceToCoord(place.domain, local.data(), coordinates.data());
+    }
+    return coordinates;
+}
+
 std::vector<eval::SurfacePlace> LocatePlaces(Model const& model, PlaceArrays const& places) {
     auto const& cage = model.GetCage();
     auto const& [faces, s, t] = places;

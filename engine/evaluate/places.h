@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,5 +37,8 @@ private:
 /// \throws PlaceError  BadMesh: a face that does not exist, a place outside its domain
 /// \throws Error       BadOption: arrays of different lengths
 std::vector<eval::SurfacePlace> LocatePlaces(Model const& model, PlaceArrays const& places);
+
+/// The other way: (s,t) in Bfr's parameterisation of a place's face.
+std::array<double, 2> FindCoordinates(Model const& model, eval::SurfacePlace const& place);
 
 }  // namespace limn::engine

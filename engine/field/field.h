@@ -13,6 +13,8 @@
 #include "eval/forms/field_designer.h"
 #include "eval/forms/field_index.h"
 #include "eval/forms/field_match.h"
+#include "eval/forms/least_connection.h"
+#include "eval/forms/pinned_function.h"
 
 namespace limn::engine {
 
@@ -20,6 +22,20 @@ namespace limn::engine {
 struct FieldStrength {
     Index element = 0;
     double strength = 1.0;
+};
+
+/// What the field does all along a boundary loop: a total, shared out by length.
+struct BoundaryLoop {
+    Index vertex = 0;            ///< any of the loop
+    bool isCirculation = false;  ///< else flux, outwards
+    double total = 0.0;          ///< circulation with the surface on the left
+};
+
+/// The same along one edge of a boundary.
+struct BoundaryEdge {
+    Index edge = 0;
+    bool isCirculation = false;
+    double value = 0.0;  ///< circulation from the lower vertex to the higher one
 };
 
 /// What a field is made of; the parts add up.
@@ -30,12 +46,31 @@ struct FieldOptions {
     std::optional<std::vector<double>> harmonics;  ///< a coefficient per generator
     std::optional<std::vector<double>> edges;      ///< a given 1-form, per edge
     std::vector<eval::WantedVector> wanted;        ///< vectors to be matched
+    std::optional<std::vector<double>> values;     ///< a function per vertex; its gradient counts
+    std::vector<eval::Pin> pins;  ///< a function that is harmonic between them; likewise
+    std::optional<std::vector<double>> integrals;  ///< per face: further vortices
+    std::vector<eval::WantedIndex> singularities;  ///< of a field of unit vectors
+    // Boundary data, over `atBoundary`. With any of it sources and vortices have no harmonics.
+    std::vector<BoundaryLoop> loops;
+    std::vector<BoundaryEdge> boundaryEdges;
+    std::vector<FieldStrength> arcFluxes;  ///< per vertex of an arc of given circulation, outwards
     eval::AtBoundary atBoundary = eval::AtBoundary::Tangent;
     bool isBalanced =
         false;  ///< strengths that do not add up to 0 are balanced over their component, evenly
     int levels = 0;  ///< refinements of the result
     bool hasVertexVectors =
         true;  ///< limits at vertices, too; takes one level at least where faces are not all quads
+};
+
+/// What a field does along boundaries that it has data for.
+struct BoundaryAudit {
+    struct Loop {
+        Index vertex = 0;       ///< the lowest
+        char const* kind = "";  ///< tangent, normal, circulation, flux, mixed
+        double circulation = 0.0, flux = 0.0;
+    };
+    std::vector<Loop> loops;
+    double residual = 0.0;  ///< of its equations, over the largest number in them
 };
 
 /// How well the field keeps its laws [Forms 8]. Curl and divergence are relative to the largest
@@ -49,14 +84,17 @@ struct FieldAudit {
     int numGenerators = 0;       ///< of harmonic forms
     eval::FieldIndices indices;  ///< of the refined form
     int eulerCharacteristic = 0;
+    std::optional<BoundaryAudit> boundary;  ///< with boundary data
     double solveSeconds = 0.0;
 };
 
 /// A field on a refined mesh.
 struct Field {
     std::unique_ptr<Far::TopologyRefiner> refined;  ///< its last level is the refined mesh
+    std::vector<double> controlForm;                ///< per edge of the mesh
     std::vector<double> form;                       ///< per edge of the refined mesh
-    Scene mesh;  ///< refined; with limit normals where there are vertex vectors
+    std::vector<double> values;  ///< per vertex of it: the function whose gradient the field has
+    Scene mesh;                  ///< refined; with limit normals where there are vertex vectors
     std::vector<std::array<double, 3>>
         vectors;  ///< per vertex: the limit's tangent vector; or empty
     std::vector<std::array<double, 3>> faceVectors;  ///< per face, at its middle
@@ -67,9 +105,13 @@ struct Field {
 ///
 /// \throws Error   BadMesh: what far_ext::CheckForms refuses, an element that does not exist,
 ///                 strengths that do not add up to 0 where they must, a wrong number of harmonic
-///                 coefficients or of values along edges.  As RefineUniformly
+///                 coefficients or of values along edges; as DesignBounded; indices that no field
+///                 can have.  BadOption: a single pin.  As RefineUniformly
 /// \throws Stopped
 /// Source  [Wang06] Sec. 4.2; [Forms 8]
 Field DesignField(Model const& model, FieldOptions const& options, Job& job);
+
+/// The limits of `values` at the vertices of the field's mesh.
+std::vector<double> FindLimitValues(Field const& field);
 
 }  // namespace limn::engine

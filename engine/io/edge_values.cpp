@@ -12,9 +12,11 @@
 
 namespace limn::engine {
 
-std::vector<EdgeValue> ReadEdgeTable(std::string const& path, char const* column,
-                                     Far::TopologyLevel const& level) {
-    NumberTable const table = ReadNumberTable(path, {{"v0", "v1", column}});
+namespace {
+
+/// Rows of a table whose first two columns are v0 and v1.
+std::vector<EdgeValue> FindEdges(NumberTable const& table, std::string const& path,
+                                 Far::TopologyLevel const& level) {
     std::vector<EdgeValue> values;
     std::vector<size_t> lineOfEdge(static_cast<size_t>(level.GetNumEdges()), 0);
     for (size_t row = 0; row < table.GetNumRows(); ++row) {
@@ -34,7 +36,26 @@ std::vector<EdgeValue> ReadEdgeTable(std::string const& path, char const* column
                             path, table.lines[row], from, to, lineOfEdge[edge]));
         }
         lineOfEdge[edge] = table.lines[row];
-        values.push_back({edge, from, to, table.Get(row, 2), table.lines[row]});
+        values.push_back({edge, from, to, 0.0, table.lines[row]});
+    }
+    return values;
+}
+
+}  // namespace
+
+std::vector<EdgeValue> ReadEdgeList(std::string const& path, Far::TopologyLevel const& level) {
+    return FindEdges(ReadNumberTable(path, {{"v0", "v1"}}), path, level);
+}
+
+std::vector<EdgeValue> ReadEdgeTable(std::string const& path, char const* column,
+                                     Far::TopologyLevel const& level, char const* kinds) {
+    std::vector<std::string> layout{"v0", "v1", column};
+    if (kinds) layout.push_back(std::string("kind=") + kinds);
+    NumberTable const table = ReadNumberTable(path, {layout});
+    auto values = FindEdges(table, path, level);
+    for (size_t row = 0; row < values.size(); ++row) {
+        values[row].value = table.Get(row, 2);
+        if (kinds) values[row].kind = static_cast<int>(table.Get(row, 3));
     }
     return values;
 }

@@ -16,13 +16,17 @@ struct EdgeValue {
     Index edge, from, to;
     double value;
     size_t line;
+    int kind = 0;  ///< which of the table's kinds
 };
 
-/// Rows of a table `v0,v1,COLUMN`, as they come.
+/// Rows of a table `v0,v1,COLUMN`, as they come; with kinds, "a|b", of `v0,v1,kind,COLUMN`.
 ///
 /// \throws Error  BadMesh: an edge that does not exist or comes twice (file and line named).  Io
 std::vector<EdgeValue> ReadEdgeTable(std::string const& path, char const* column,
-                                     Far::TopologyLevel const& level);
+                                     Far::TopologyLevel const& level, char const* kinds = nullptr);
+
+/// The edges of a table `v0,v1`, as they come. \throws Error  as above
+std::vector<EdgeValue> ReadEdgeList(std::string const& path, Far::TopologyLevel const& level);
 
 /// A 1-form from a table `v0,v1,value`: what a field does along the edges from v0 to v1; 0 on edges
 /// that are not listed.

@@ -33,6 +33,11 @@ bool AreAlike(std::string_view a, std::string_view b) {
     return std::ranges::equal(a, b, {}, lower, lower);
 }
 
+/// A column without the words it may hold.
+std::string GetName(std::string const& column) {
+    return column.substr(0, column.find('='));
+}
+
 class TableReader {
 public:
     TableReader(std::string_view text, std::string const& path, std::vector<Layout> const& layouts)
@@ -93,8 +98,11 @@ private:
 
     void ReadHeader() {
         std::string wanted;
-        for (Layout const& layout : _layouts)
-            wanted += fmt::format("{}{}", wanted.empty() ? "" : " or ", fmt::join(layout, ","));
+        for (Layout const& layout : _layouts) {
+            Layout names;
+            for (std::string const& column : layout) names.push_back(GetName(column));
+            wanted += fmt::format("{}{}", wanted.empty() ? "" : " or ", fmt::join(names, ","));
+        }
         if (!NextLine()) {
             throw Error(ErrorCode::BadMesh,
                         fmt::format("{}: the file is empty; a header {} is needed", _scan.GetPath(),
@@ -135,7 +143,7 @@ private:
     bool FindColumns(Layout const& layout) {
         _columns.clear();
         for (std::string const& name : layout) {
-            auto const column = FindColumn(name);
+            auto const column = FindColumn(GetName(name));
             if (!column) return false;
             _columns.push_back(*column);
         }
@@ -160,6 +168,8 @@ private:
     }
 
     double ToNumber(std::string_view field, std::string const& column) const {
+        if (size_t const equals = column.find('='); equals != std::string::npos)
+            return ToWord(field, column.substr(0, equals), column.substr(equals + 1));
         auto const parsed = TextScanner::ParseNumber(field);
         bool const isAll = parsed.length == field.size();
         if (parsed.IsNumber() && isAll) return parsed.value;
@@ -170,6 +180,18 @@ private:
         bool const hasComma = field.find(',') != std::string_view::npos;
         _scan.Refuse(fmt::format("{} in column {} is no number{}", TextScanner::Quote(field),
                                  column, hasComma ? "; write a decimal point, not a comma" : ""));
+    }
+
+    /// Which of the words, parted by bars, a field is.
+    double ToWord(std::string_view field, std::string const& column, std::string_view words) const {
+        double number = 0.0;
+        for (size_t start = 0; start <= words.size(); number += 1.0) {
+            size_t const end = std::min(words.find('|', start), words.size());
+            if (AreAlike(field, words.substr(start, end - start))) return number;
+            start = end + 1;
+        }
+        _scan.Refuse(
+            fmt::format("{} in column {} is none of {}", TextScanner::Quote(field), column, words));
     }
 
     std::string_view _text;

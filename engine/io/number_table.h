@@ -19,7 +19,8 @@ struct NumberTable {
 
 /// Reads a table whose header names the columns of one of the layouts, in any order and in small or
 /// capital letters; other columns are skipped. Fields are parted by commas, or all by semicolons,
-/// and may be quoted.
+/// and may be quoted. A column "kind=circulation|flux" is `kind`, of these words for numbers: 0 is
+/// the first of them.
 ///
 /// \throws Error  BadMesh: another header, one that names a column twice, a row with more fields
 /// than

@@ -89,6 +89,20 @@ public:
         }
     }
 
+    /// Draws a line of points near the surface where it is seen.
+    void DrawLineOnSurface(std::vector<Vector> const& points) {
+        double const slack = kPixelsOff / _camera.GetScale();
+        for (size_t i = 1; i < points.size(); ++i) {
+            Vector const from = _camera.Project(points[i - 1]),
+                         step = _camera.Project(points[i]) - from;
+            int const count = static_cast<int>(std::ceil(2.0 * step.head<2>().norm()));
+            for (int k = 0; k < count; ++k) {
+                Vector const at = from + step * k / count;
+                if (IsSeen(at, slack)) DrawDot(at.head<2>());
+            }
+        }
+    }
+
     /// Values from 0 (black) to 1 as greys, without a legend: they measure nothing.
     Picture MakeGrey() const {
         Picture picture(_size, _size);
@@ -103,6 +117,8 @@ public:
     PictureCamera const& GetCamera() const { return _camera; }
 
 private:
+    static constexpr double kPixelsOff = 4.0;  // as far as lines lie off the mesh, at most
+
     size_t NumPixels() const { return static_cast<size_t>(_size) * static_cast<size_t>(_size); }
     Vector PointOf(Index vertex) const { return far_ext::Points(_scene.positions)[vertex]; }
 
@@ -120,12 +136,15 @@ private:
     void DrawLine(Eigen::Vector2d const& from, Eigen::Vector2d const& step) {
         int const count = static_cast<int>(std::ceil(2.0 * step.norm()));
         for (int i = 0; i <= count; ++i) {
-            Eigen::Vector2d const p = from + step * i / std::max(1, count);
-            for (int corner = 0; corner < 4; ++corner) {
-                int const x = static_cast<int>(std::floor(p.x() - 0.5)) + corner % 2,
-                          y = static_cast<int>(std::floor(p.y() - 0.5)) + corner / 2;
-                if (IsInside(x, y) && _coverage[At(x, y)] > 0.0f) _values[At(x, y)] = 0.0f;
-            }
+            DrawDot(from + step * i / std::max(1, count));
+        }
+    }
+
+    void DrawDot(Eigen::Vector2d const& p) {
+        for (int corner = 0; corner < 4; ++corner) {
+            int const x = static_cast<int>(std::floor(p.x() - 0.5)) + corner % 2,
+                      y = static_cast<int>(std::floor(p.y() - 0.5)) + corner / 2;
+            if (IsInside(x, y) && _coverage[At(x, y)] > 0.0f) _values[At(x, y)] = 0.0f;
         }
     }
 
@@ -163,6 +182,18 @@ Vector BlendNormal(far_ext::Points normals, Vector const& weights,
     Vector normal = Vector::Zero();
     for (int k = 0; k < 3; ++k) normal += weights[k] * normals[corners[k]];
     return normal.normalized();
+}
+
+/// A smooth mesh, brighter where it faces the eye.
+MeshPicture DrawLit(Scene const& scene, PictureView const& view) {
+    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    auto const normals = eval::FindAngleNormals(refiner->GetLevel(0), scene.positions);
+    MeshPicture picture(scene, view);
+    picture.Draw([&](Vector const& weights, std::array<Index, 3> const& corners) {
+        return 0.4 + 0.6 * std::abs(BlendNormal(normals, weights, corners)
+                                        .dot(picture.GetCamera().GetDirectionToEye()));
+    });
+    return picture;
 }
 
 }  // namespace
@@ -217,14 +248,15 @@ Picture DrawHighlights(Scene const& scene, PictureView const& view) {
 
 Picture DrawArrows(Scene const& scene, std::vector<std::array<double, 3>> const& vectors,
                    PictureView const& view) {
-    auto const refiner = far_ext::CreateRefiner(scene.cage);
-    auto const normals = eval::FindAngleNormals(refiner->GetLevel(0), scene.positions);
-    MeshPicture picture(scene, view);
-    picture.Draw([&](Vector const& weights, std::array<Index, 3> const& corners) {
-        return 0.4 + 0.6 * std::abs(BlendNormal(normals, weights, corners)
-                                        .dot(picture.GetCamera().GetDirectionToEye()));
-    });
+    MeshPicture picture = DrawLit(scene, view);
     picture.DrawArrows(vectors, view.size / 32.0);
+    return picture.MakeGrey();
+}
+
+Picture DrawLines(Scene const& scene, std::vector<std::vector<Eigen::Vector3d>> const& lines,
+                  PictureView const& view) {
+    MeshPicture picture = DrawLit(scene, view);
+    for (auto const& line : lines) picture.DrawLineOnSurface(line);
     return picture.MakeGrey();
 }
 

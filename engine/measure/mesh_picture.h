@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "engine/bake/maps/map_colours.h"
 #include "engine/images/picture.h"
 #include "engine/images/picture_view.h"
@@ -39,5 +41,12 @@ Picture DrawHighlights(Scene const& scene, PictureView const& view);
 /// \throws Error   as above
 Picture DrawArrows(Scene const& scene, std::vector<std::array<double, 3>> const& vectors,
                    PictureView const& view);
+
+/// Draws a mesh as DrawArrows does, with lines on it, each a list of points near its surface. What
+/// lies behind it is hidden.
+///
+/// \throws Error  as above
+Picture DrawLines(Scene const& scene, std::vector<std::vector<Eigen::Vector3d>> const& lines,
+                  PictureView const& view);
 
 }  // namespace limn::engine

@@ -4,67 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/SparseCholesky>
-
-#include "eval/forms/dissection_ordering.h"
+#include "eval/forms/laplace_solver.h"
 #include "eval/forms/tree_cotree.h"
 #include "far_ext/error.h"
 #include "far_ext/forms/form_operators.h"
 
 namespace limn::eval {
-
-namespace {
-
-using Matrix = Eigen::SparseMatrix<double>;
-
-}  // namespace
-
-/// One of the two Laplacians, with the unknowns that are fixed to 0 left out.
-class FieldDesigner::Factorisation {
-public:
-    /// \param isFixed  per unknown
-    Factorisation(std::vector<char> const& isFixed,
-                  std::vector<Eigen::Triplet<double>> const& entries) {
-        Index count = 0;
-        for (char fixed : isFixed) _places.push_back(fixed ? -1 : count++);
-        _right.resize(count);
-        if (count == 0) return;
-        std::vector<Eigen::Triplet<double>> kept;
-        kept.reserve(entries.size());
-        for (auto const& entry : entries) {
-            Index const row = _places[entry.row()], column = _places[entry.col()];
-            if (row >= 0 && column >= 0 && row >= column)
-                kept.emplace_back(row, column, entry.value());
-        }
-        Matrix matrix(count, count);
-        matrix.setFromTriplets(kept.begin(), kept.end());
-        _solver.compute(matrix);
-        if (_solver.info() != Eigen::Success) {
-            throw Error(ErrorCode::BadMesh,
-                        "the equations of this mesh have no solution in double precision: its "
-                        "edges or angles "
-                        "differ by too many orders of magnitude");
-        }
-    }
-
-    std::vector<double> Solve(std::span<double const> right) {
-        std::vector<double> result(right.size(), 0.0);
-        if (_right.size() == 0) return result;
-        for (size_t i = 0; i < right.size(); ++i) {
-            if (_places[i] >= 0) _right[_places[i]] = right[i];
-        }
-        Eigen::VectorXd const solution = _solver.solve(_right);
-        for (size_t i = 0; i < right.size(); ++i) {
-            if (_places[i] >= 0) result[i] = solution[_places[i]];
-        }
-        return result;
-    }
-
-private:
-    std::vector<Index> _places;
-    Eigen::VectorXd _right;
-    Eigen::SimplicialLDLT<Matrix, Eigen::Lower, DissectionOrdering> _solver;
-};
 
 FieldDesigner::~FieldDesigner() = default;
 
@@ -127,7 +72,7 @@ int FieldDesigner::CountHarmonics() const {
     return count;
 }
 
-std::vector<double> FieldDesigner::MakeGradient(std::span<double const> sources) {
+std::vector<double> FieldDesigner::FindPotential(std::span<double const> sources) {
     if (!_vertices) {
         std::vector<char> isFixed = _isFixedVertex, isPinned(_components.count, 0);
         for (size_t vertex = 0; vertex < isFixed.size(); ++vertex) {
@@ -148,17 +93,15 @@ std::vector<double> FieldDesigner::MakeGradient(std::span<double const> sources)
                                          a == b ? _stars.edge[edge] : -_stars.edge[edge]);
             }
         }
-        _vertices = std::make_unique<Factorisation>(isFixed, entries);
+        _vertices = std::make_unique<LaplaceSolver>(isFixed, entries);
     }
     std::vector<double> right(sources.size());
     for (size_t i = 0; i < right.size(); ++i) right[i] = -sources[i];
-    std::vector<double> const f = _vertices->Solve(right);
-    std::vector<double> form(_level.GetNumEdges());
-    for (Index edge = 0; edge < _level.GetNumEdges(); ++edge) {
-        auto const ends = _level.GetEdgeVertices(edge);
-        form[edge] = f[std::max(ends[0], ends[1])] - f[std::min(ends[0], ends[1])];
-    }
-    return form;
+    return _vertices->Solve(right);
+}
+
+std::vector<double> FieldDesigner::MakeGradient(std::span<double const> sources) {
+    return far_ext::TakeDifferences(_level, FindPotential(sources));
 }
 
 std::vector<double> FieldDesigner::MakeVortex(std::span<double const> vortices) {
@@ -180,7 +123,7 @@ std::vector<double> FieldDesigner::MakeVortex(std::span<double const> vortices) 
             entries.emplace_back(faces[0], faces[1], -weight);
             entries.emplace_back(faces[1], faces[0], -weight);
         }
-        _faces = std::make_unique<Factorisation>(isFixed, entries);
+        _faces = std::make_unique<LaplaceSolver>(isFixed, entries);
     }
     std::vector<double> form(_level.GetNumEdges(), 0.0), missing(vortices.begin(), vortices.end());
     for (int step = 0; step < 2;

@@ -13,6 +13,8 @@
 
 namespace limn::eval {
 
+class LaplaceSolver;
+
 /// What a field does at boundaries: it runs along them, or straight into them.
 enum class AtBoundary { Tangent, Normal };
 
@@ -64,6 +66,10 @@ public:
     ///                 component takes
     std::vector<double> MakeGradient(std::span<double const> sources);
 
+    /// The function f of which that is d0: 0 at the lowest vertex of each component, under Normal
+    /// at boundaries.
+    std::vector<double> FindPotential(std::span<double const> sources);
+
     /// \param vortices  per face  \pre as MakeGradient, for the lowest face
     std::vector<double> MakeVortex(std::span<double const> vortices);
 
@@ -86,8 +92,6 @@ public:
     std::vector<double> FindCurl(std::vector<double> const& form) const;
 
 private:
-    class Factorisation;
-
     std::vector<Imbalance> FindImbalance(std::span<double const> strengths,
                                          std::vector<int> const& componentOf,
                                          AtBoundary freeBoundary) const;
@@ -102,7 +106,7 @@ private:
     std::vector<char> _isOpen;            // per component
     std::vector<char> _isFixedVertex;     // Normal: on a boundary
     std::vector<char> _isEmptyEdge;       // Normal: a boundary edge
-    std::unique_ptr<Factorisation> _vertices, _faces;
+    std::unique_ptr<LaplaceSolver> _vertices, _faces;
     std::vector<std::vector<double>> _harmonics;
 };
 

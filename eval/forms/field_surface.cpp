@@ -87,17 +87,9 @@ void FieldSurface::Sampler::Bind(Index face) {
                                            : _quad.Bind(level, face, _field._form);
 }
 
-Eigen::Vector3d FieldSurface::Sampler::EvaluateHere(SurfacePlace const& place) {
-    double const s = place.s, t = place.t;
-    auto const derivatives =
-        EvaluateDerivatives(_tree, _tree.LocateChecked(place.domain, s, t, FaceTree::kLimitDepth));
-    if (!HasTangentPlane(derivatives)) return Eigen::Vector3d::Zero();
-    if (_isRegular) {
-        auto const values =
-            _field._surface->IsLoop() ? _triangle.Evaluate(s, t) : _quad.Evaluate(s, t);
-        return VertexCovector{{derivatives.ds, derivatives.dt}, values}.GetVector();
-    }
-    auto const corners = _field._refiner->GetLevel(0).GetFaceVertices(place.face);
+/// The exact vectors at the corners of the bound face, laid into the tangent plane.
+Eigen::Vector3d FieldSurface::Sampler::BlendCorners(Here const& here, double s, double t) const {
+    auto const corners = _field._refiner->GetLevel(0).GetFaceVertices(_tree.GetFace());
     auto const& vectors = _field._vectors;
     Eigen::Vector3d blend;
     if (corners.size() == 3) {
@@ -107,8 +99,23 @@ Eigen::Vector3d FieldSurface::Sampler::EvaluateHere(SurfacePlace const& place) {
         blend = (1.0 - t) * ((1.0 - s) * vectors[corners[0]] + s * vectors[corners[1]]) +
                 t * ((1.0 - s) * vectors[corners[3]] + s * vectors[corners[2]]);
     }
-    Eigen::Vector3d const normal = derivatives.ds.cross(derivatives.dt).normalized();
+    Eigen::Vector3d const normal = here.ds.cross(here.dt).normalized();
     return blend - normal * normal.dot(blend);
+}
+
+FieldSurface::Here FieldSurface::Sampler::EvaluateHere(double s, double t) {
+    auto const derivatives =
+        EvaluateDerivatives(_tree, _tree.LocateChecked(0, s, t, FaceTree::kLimitDepth));
+    Here here{derivatives.position, derivatives.ds, derivatives.dt, Eigen::Vector3d::Zero()};
+    if (!HasTangentPlane(derivatives)) return here;
+    if (_isRegular) {
+        auto const values =
+            _field._surface->IsLoop() ? _triangle.Evaluate(s, t) : _quad.Evaluate(s, t);
+        here.vector = VertexCovector{{here.ds, here.dt}, values}.GetVector();
+    } else {
+        here.vector = BlendCorners(here, s, t);
+    }
+    return here;
 }
 
 void FieldSurface::Sampler::Evaluate(Index face, int domain, std::span<double const> s,
@@ -120,7 +127,7 @@ void FieldSurface::Sampler::Evaluate(Index face, int domain, std::span<double co
     for (auto const& place : _places) {
         if (place.at.face != bound) Bind(place.at.face);
         bound = place.at.face;
-        vectors[place.index] = EvaluateHere(place.at);
+        vectors[place.index] = EvaluateHere(place.at.s, place.at.t).vector;
     }
 }
 

@@ -35,6 +35,20 @@ public:
     FieldSurface(far_ext::ControlMesh const& cage, std::span<double const> positions,
                  std::span<double const> form, int levels);
 
+    /// The refined cage, whose limit is the cage's, with what lies on it; edges have the numbers of
+    /// the surface's refiner.
+    far_ext::ControlMesh const& GetRefinedCage() const { return _cage; }
+    std::vector<double> const& GetPositions() const { return _positions; }
+    std::vector<double> const& GetForm() const { return _form; }
+    LimitSurface const& GetSurface() const { return *_surface; }
+    RefinedFaces const& GetRefinedFaces() const { return *_faces; }
+
+    /// What there is at a place.
+    struct Here {
+        Eigen::Vector3d position, ds, dt;
+        Eigen::Vector3d vector;  ///< 0 where there is no tangent plane
+    };
+
     /// Keeps a view of the field, which must outlive it.
     class Sampler {
     public:
@@ -46,9 +60,17 @@ public:
         void Evaluate(Index face, int domain, std::span<double const> s, std::span<double const> t,
                       std::span<Eigen::Vector3d> vectors);
 
-    private:
+        /// Makes a face of the refined cage the current one. \pre  it has a limit
         void Bind(Index face);
-        Eigen::Vector3d EvaluateHere(SurfacePlace const& place);
+        bool IsBound(Index face) const { return _tree.GetFace() == face; }
+        /// Whether the bound face is among regular ones, where the field is exact.
+        bool IsRegular() const { return _isRegular; }
+
+        /// On the bound face; beyond it polynomial pieces and blends go on.
+        Here EvaluateHere(double s, double t);
+
+    private:
+        Eigen::Vector3d BlendCorners(Here const& here, double s, double t) const;
 
         FieldSurface const& _field;
         FaceTree _tree;

@@ -2,6 +2,7 @@
 #include "eval/surface/refined_faces.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace limn::eval {
 
@@ -35,6 +36,25 @@ SurfacePlace RefinedFaces::Descend(SurfacePlace place) const {
         place.face = base.firstChild + GetChildAt(_isLoop, place.s, place.t);
     for (int level = 2; level <= _levels; ++level)
         place.face = 4 * place.face + GetChildAt(_isLoop, place.s, place.t);
+    return place;
+}
+
+SurfacePlace RefinedFaces::FindBase(SurfacePlace place) const {
+    if (_levels == 0) return place;
+    for (int level = _levels; level > 1; --level) {
+        LeaveChild(_isLoop, place.face % 4, place.s, place.t);
+        place.face /= 4;
+    }
+    auto const after =
+        std::upper_bound(_baseFaces.begin(), _baseFaces.end(), place.face,
+                         [](Index child, BaseFace const& base) { return child < base.firstChild; });
+    auto const base = std::prev(after);
+    int const child = place.face - base->firstChild;
+    place.face = static_cast<Index>(base - _baseFaces.begin());
+    if (base->numDomains > 1)
+        place.domain = child;
+    else
+        LeaveChild(_isLoop, child, place.s, place.t);
     return place;
 }
 

@@ -22,6 +22,11 @@ public:
 
     SurfacePlace Find(SurfacePlace const& place) const;
 
+    /// The other way: where a place of a refined face lies on the cage.
+    ///
+    /// \pre  a refined face of a face with a limit
+    SurfacePlace FindBase(SurfacePlace place) const;
+
     /// A place of a list, and which one it was.
     struct Sample {
         SurfacePlace at;

@@ -90,6 +90,16 @@ int GetChildAt(bool isLoop, double& s, double& t) {
     return j ? 3 - i : i;
 }
 
+void LeaveChild(bool isLoop, int child, double& s, double& t) {
+    if (isLoop) {
+        s = child == 3 ? 0.5 - 0.5 * s : 0.5 * s + (child == 1 ? 0.5 : 0.0);
+        t = child == 3 ? 0.5 - 0.5 * t : 0.5 * t + (child == 2 ? 0.5 : 0.0);
+        return;
+    }
+    s = 0.5 * s + (child == 1 || child == 2 ? 0.5 : 0.0);
+    t = 0.5 * t + (child >= 2 ? 0.5 : 0.0);
+}
+
 void CheckFace(Index face, Index numFaces) {
     if (!IsFace(face, numFaces)) Refuse(DescribeFace(face, numFaces));
 }

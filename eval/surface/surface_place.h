@@ -41,6 +41,9 @@ inline SurfacePlace GetEdgePlace(LimitSurface const& surface, Index face, int si
 /// and the flipped triangle in the middle). (s,t) become coordinates of that child.
 int GetChildAt(bool isLoop, double& s, double& t);
 
+/// The other way: (s,t) of a child become coordinates of the face it is a child of.
+void LeaveChild(bool isLoop, int child, double& s, double& t);
+
 /// Gauss points and weights of [0, 1].
 inline constexpr double kGaussNodes[3] = {0.1127016653792583, 0.5, 0.8872983346207417};
 inline constexpr double kGaussWeights[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};

@@ -89,6 +89,15 @@ bool HasRefinedFaces(ControlMesh const& mesh) {
                        [&](int size) { return size == wanted; });
 }
 
+std::vector<double> TakeDifferences(Far::TopologyLevel const& level, std::span<double const> f) {
+    std::vector<double> form(level.GetNumEdges());
+    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+        auto const ends = level.GetEdgeVertices(edge);
+        form[edge] = f[std::max(ends[0], ends[1])] - f[std::min(ends[0], ends[1])];
+    }
+    return form;
+}
+
 SparseRows BuildD0(Far::TopologyLevel const& level) {
     SparseRows rows;
     for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {

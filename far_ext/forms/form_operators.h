@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include <opensubdiv/far/topologyRefiner.h>
 
 #include "far_ext/rows/sparse_rows.h"
@@ -40,6 +43,9 @@ bool HasRefinedFaces(ControlMesh const& mesh);
 
 /// d0: edges x vertices. (d0 f)(a -> b) = f(b) - f(a).
 SparseRows BuildD0(Far::TopologyLevel const& level);
+
+/// d0 f without the matrix.
+std::vector<double> TakeDifferences(Far::TopologyLevel const& level, std::span<double const> f);
 
 /// d1: faces x edges. (d1 w)(face) = sum of w along its sides. d1 d0 = 0.
 SparseRows BuildD1(Far::TopologyLevel const& level);

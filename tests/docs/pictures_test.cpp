@@ -124,7 +124,8 @@ Words ListInputs(Words const& command) {
     Words inputs;
     for (size_t i = 1; i < command.size(); ++i) {
         bool const isWritten = command[i - 1] == "-o" || command[i - 1] == "--picture" ||
-                               command[i - 1] == "--report" || command[i].starts_with('>');
+                               command[i - 1] == "--report" || command[i - 1] == "--streamlines" ||
+                               command[i].starts_with('>');
         if (isWritten) continue;
         for (char const* folder : {"scenes/", "tests/", "out/"}) {
             if (command[i].starts_with(folder)) inputs.push_back(command[i]);

@@ -54,6 +54,20 @@ TEST(Places, OfPolygonsLieInTheTileOfACorner) {
     EXPECT_EQ(found[1].t, 0.25);
 }
 
+// There and back: coordinates of a place are those that locate it.
+TEST(Places, HaveTheCoordinatesThatLocateThem) {
+    for (int size : {4, 5, 7}) {
+        Model const model = MakePolygon(size);
+        for (int domain = 0; domain < (size == 4 ? 1 : size); ++domain) {
+            auto const [s, t] = FindCoordinates(model, {0, domain, 0.25, 0.625});
+            auto const found = Locate(model, {0}, {s}, {t}).at(0);
+            EXPECT_EQ(found.domain, domain);
+            EXPECT_EQ(found.s, 0.25);
+            EXPECT_EQ(found.t, 0.625);
+        }
+    }
+}
+
 struct Outside {
     char const* name;
     int faceSize;

@@ -123,5 +123,17 @@ TEST_F(Tables, AreReadWholeOrRefusedHoweverDamaged) {
     EXPECT_GT(numRefused, 50);
 }
 
+// "kind=a|b" is a column of words, told by their numbers.
+TEST(WordsOfTables, AreNumbersInTheirOrder) {
+    test::TemporaryFolder const folder;
+    auto const read = [&](std::string const& text) {
+        return engine::ReadNumberTable(folder.Write("t.csv", text), {{"v0", "kind=flux|turn"}});
+    };
+    EXPECT_EQ(read("kind,v0\nturn,3\nFlux,4\n").values, (std::vector<double>{3, 1, 4, 0}));
+    EXPECT_NE(test::RefusalOf([&] { read("kind,v0\nturns,3\n"); }).find("t.csv:2"),
+              std::string::npos);
+    EXPECT_NE(test::RefusalOf([&] { read("v0\n3\n"); }).find("v0,kind"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace limn

@@ -150,6 +150,18 @@ TEST(MeshPicture, ArrowsStandWhereVectorsAre) {
     EXPECT_EQ(Count(picture, kBackground), size_t{200 * 200 - 188 * 188});
 }
 
+// A line on the front is drawn, one on the back is hidden.
+TEST(MeshPicture, LinesAreDrawnWhereTheyAreSeen) {
+    engine::Scene const cube = test::MakeCube();
+    double const front = cube.positions[3 * 6 + 2];
+    Pixel const black{0, 0, 0};
+    auto const draw = [&](double z) {
+        return engine::DrawLines(cube, {{{-0.2, 0.0, z}, {0.2, 0.0, z}}}, kFromFront);
+    };
+    EXPECT_GT(Count(draw(front), black), 20u);
+    EXPECT_EQ(Count(draw(-front), black), 0u);
+}
+
 TEST(MeshPicture, AViewNeedsADirection) {
     PictureView const nowhere{{0.0, 0.0, 0.0}, 200};
     engine::Scene const cube = test::MakeCube();

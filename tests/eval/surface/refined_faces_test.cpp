@@ -44,6 +44,11 @@ TEST_P(RefinedFacesOf, TheRefinedCageHasTheSameLimitThere) {
                     auto const place = faces.Find({face, domain, s, t});
                     ASSERT_LT(place.face, fineSurface.GetNumFaces());
                     ASSERT_TRUE(fineSurface.HasLimit(place.face));
+                    auto const back = faces.FindBase(place);
+                    EXPECT_EQ(back.face, face);
+                    EXPECT_EQ(back.domain, domain);
+                    EXPECT_NEAR(back.s, s, 1e-14);
+                    EXPECT_NEAR(back.t, t, 1e-14);
                     fineTree.Bind(place.face);
                     for (int c = 0; c < 3; ++c) {
                         EXPECT_NEAR(
