@@ -19,6 +19,7 @@
 #include "engine/cli/option_names.h"
 #include "engine/cli/option_rules.h"
 #include "engine/cli/options/bake_values.h"
+#include "engine/cli/options/band_options.h"
 #include "engine/cli/options/choices.h"
 #include "engine/cli/options/nearest_words.h"
 #include "engine/cli/options/number_option.h"
@@ -38,6 +39,7 @@ struct BakeArguments {
     std::vector<std::string> meshes, tiles, seamBounds;
     std::string size = "2048", against, rest, fieldPath, encode, noiseRamp, previewRange, half;
     std::optional<std::string> origin;
+    BandArguments bands;
     bool hasAudit = false, hasPicture = false;
     std::vector<double> view{1.0, 0.6, 0.8};
     engine::AuditBounds bounds;
@@ -96,13 +98,14 @@ struct MapFlag {
     char const* flag;
     char const* member;
 };
-constexpr MapFlag kMapFlags[] = {{"--against", "against"},     {"--rest", "rest"},
-                                 {"--bands", "bands"},         {"--origin", "origin"},
-                                 {"--vector", "isVector"},     {"--space", "space"},
-                                 {"--field", "field"},         {"--normalize", "isNormalized"},
-                                 {"--noise-octaves", "noise"}, {"--noise-frequency", "noise"},
-                                 {"--noise-gain", "noise"},    {"--noise-seed", "noise"},
-                                 {"--noise-ramp", "noiseRamp"}};
+constexpr MapFlag kMapFlags[] = {{"--against", "against"},      {"--rest", "rest"},
+                                 {"--bands", "bands"},          {"--origin", "origin"},
+                                 {"--vector", "isVector"},      {"--space", "space"},
+                                 {"--field", "field"},          {"--normalize", "isNormalized"},
+                                 {"--noise-octaves", "noise"},  {"--noise-frequency", "noise"},
+                                 {"--noise-gain", "noise"},     {"--noise-seed", "noise"},
+                                 {"--noise-ramp", "noiseRamp"}, {"--gain", "bandSum"},
+                                 {"--from", "bandSum"},         {"--carry", "bandSum"}};
 
 /// Refuses pictures that cannot be: of what has no colours, or is no file to look up.
 void RefusePictures(BakeArguments const& a) {
@@ -150,6 +153,16 @@ void RefuseWithoutEffect(CLI::App const& verb, std::vector<std::string> const& m
         RefuseEach(verb, {"--audit-bound", "--seam-bound"}, "needs --audit");
 }
 
+/// How many bands, or the one sum of them.
+void ChooseBands(BandArguments const& a, engine::BakeOptions& options) {
+    RefuseWithoutFrom(a);
+    if (a.from.empty() && !a.bands.empty())
+        options.bands = ParseNumber<int>("--bands", a.bands, {1, 64});
+    if (!a.IsSum()) return;
+    std::optional<int> const count = a.from.empty() ? std::optional(options.bands) : std::nullopt;
+    options.bandSum = MakeBandSum(a, count, "--bands");
+}
+
 engine::BakeOptions MakeOptions(BakeArguments const& a, CommonOptions const& common) {
     engine::BakeOptions options = a.options;
     if (!a.encode.empty()) options.encoding = ParseEncoding(a.encode);
@@ -157,6 +170,7 @@ engine::BakeOptions MakeOptions(BakeArguments const& a, CommonOptions const& com
     if (!a.noiseRamp.empty()) options.noiseRamp = engine::ColourRamp::Parse(a.noiseRamp);
     if (!a.previewRange.empty()) options.previewRange = engine::PreviewRange::Parse(a.previewRange);
     ParseHalf(a.half, options);
+    ChooseBands(a.bands, options);
     auto const [width, height] = ParseTexelSize("--size", a.size, {1, 65536});
     options.width = width;
     options.height = height;
@@ -263,13 +277,15 @@ std::vector<Bake> PlanBakes(BakeArguments const& a, engine::BakeOptions const& o
         }
     }
     for (std::string const& path : a.meshes) names.Refuse(path, "an input");
-    for (std::string const& path : {a.against, a.rest, a.fieldPath}) {
+    for (std::string const& path : {a.against, a.rest, a.fieldPath, a.bands.from}) {
         if (!path.empty()) names.Refuse(path, "an input");
     }
     std::string const& report = context.GetCommon().reportPath;
     if (!report.empty() && report != "-") names.Refuse(report, "the report");
-    std::vector<NamedFile> read{
-        {"--against", a.against}, {"--rest", a.rest}, {"--field", a.fieldPath}};
+    std::vector<NamedFile> read{{"--against", a.against},
+                                {"--rest", a.rest},
+                                {"--field", a.fieldPath},
+                                {"--from", a.bands.from}};
     for (std::string const& path : a.meshes) read.push_back({"MESH", path});
     context.KeepApart(read, {});  // the report from inputs
     return bakes;
@@ -294,6 +310,7 @@ std::vector<std::string> RunBake(BakeArguments const& a, Bake& bake,
     if (!a.fieldPath.empty()) options.field = engine::ReadEdgeValues(a.fieldPath, model.GetLevel());
     if (!a.against.empty()) options.against = context.Load(a.against);
     if (!a.rest.empty()) options.rest = context.Load(a.rest);
+    if (!a.bands.from.empty()) options.bandSum->from = context.Load(a.bands.from);
     auto const report = engine::Bake(model, options, context.GetJob());
     AddToReport(context.GetReport(), report);
     DrawPictures(a, model, options, report, context);
@@ -392,9 +409,11 @@ void AddMapOptions(CLI::App& verb, BakeArguments& a) {
     verb.add_option("--origin", a.origin,
                     "X,Y,Z taken off the map position, or auto: a round point near the mesh's "
                     "middle; header limn:origin");
-    AddNumberOption(verb, "--bands", a.options.bands,
-                    "of the map bands: frequency bands, their smooth base included (default 4)",
-                    {1, 64});
+    AddBandOptions(verb, a.bands,
+                   "of the map bands: frequency bands, their smooth base included (default 4, at "
+                   "most 64); with --from which of that mesh's, from 0: I-J, I- (with the "
+                   "remainder) or one",
+                   std::to_string(a.options.bands));
     verb.add_flag(
         "--vector", a.options.isVector,
         "displacement and bands as whole vectors (default: only their part along the "

@@ -35,6 +35,7 @@ struct RefineArguments {
     std::optional<double> tolerance;
     int levels = 1;
     bool isDifferential = false, toLimit = false, keepsResult = false, isCurve = false;
+    double alpha = 0.0;
     engine::DifferentialOptions options;
 };
 
@@ -131,6 +132,7 @@ engine::DifferentialResult RefineDifferentially(RefineArguments const& a,
 }
 
 void CheckSpace(RefineArguments const& a, CLI::App const& verb) {
+    if (a.isDifferential) RefuseEach(verb, {"--alpha"}, "is of --space spatial");
     if (!a.isDifferential)
         return RefuseEach(verb, kDifferentialOptions, "needs --space differential");
     if (a.toLimit) {
@@ -143,7 +145,7 @@ void CheckSpace(RefineArguments const& a, CLI::App const& verb) {
 int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& context) {
     constexpr char const* kWhy = "means nothing with --curve; leave it out";
     RefuseEach(verb, kDifferentialOptions, kWhy);
-    RefuseEach(verb, {"--limit", "--weld"}, kWhy);
+    RefuseEach(verb, {"--limit", "--weld", "--alpha"}, kWhy);
     auto const rule = GetRule(a) == SubdivisionRule::Butterfly ? eval::CurveRule::FourPoint
                                                                : eval::CurveRule::CubicBSpline;
     context.GetJob().Start("reading " + a.mesh);
@@ -180,7 +182,7 @@ int RunRefine(RefineArguments const& a, CLI::App const& verb, Context& context) 
         result = RefineDifferentially(a, model, context);
     } else {
         result.mesh = engine::RefineUniformly(
-            model, {.levels = a.levels, .toLimit = a.toLimit, .rule = GetRule(a)},
+            model, {.levels = a.levels, .toLimit = a.toLimit, .rule = GetRule(a), .alpha = a.alpha},
             context.GetJob());
         result.report.precision = context.ChoosePrecision(a.output, result.mesh.positions);
     }
@@ -204,6 +206,10 @@ Verb AddRefine(CLI::App& app) {
     AddWordOption(*verb, "--rule", a->rule, kRuleWords,
                   "loop, catmark or butterfly (default: the scheme's)");
     verb->add_flag("--limit", a->toLimit, "move the result's vertices to the limit surface");
+    AddNumberOption(*verb, "--alpha", a->alpha,
+                    "generalised Catmull-Clark in every step, 0 (default) to 1: the surface of "
+                    "limn fit --alpha-rule stationary",
+                    {0.0, 1.0});
     verb->add_flag(
         "--curve", a->isCurve,
         "MESH holds polylines (OBJ 'l'); their rule is cubic B-spline, for butterfly four-point");

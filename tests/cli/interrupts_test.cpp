@@ -54,6 +54,7 @@ std::vector<Run> const kRuns{
     {"Fit", {"fit", "MESH", "-o", "OUT.obj", "--method", "progressive", "--tolerance", "1e-12"}},
     {"FitDirect", {"fit", "MESH", "-o", "OUT.obj", "--method", "direct"}},
     {"Bands", {"bands", "MESH", "-o", "OUT", "--count", "20"}},
+    {"BandsOfAnother", {"bands", "MESH", "-o", "OUT.obj", "--from", "MESH", "--bands", "200-"}},
     {"Denoise", {"denoise", "MESH", "-o", "OUT.obj", "--steps", "200"}},
     {"Sharpen", {"sharpen", "MESH", "-o", "OUT.obj", "--steps", "200"}},
     {"Morph", {"morph", "MESH", "MESH", "-o", "OUT", "--steps", "50"}},
