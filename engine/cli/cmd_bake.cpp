@@ -22,6 +22,7 @@
 #include "engine/cli/options/band_options.h"
 #include "engine/cli/options/choices.h"
 #include "engine/cli/options/nearest_words.h"
+#include "engine/cli/options/noise_options.h"
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/images/exr_names.h"
@@ -98,14 +99,15 @@ struct MapFlag {
     char const* flag;
     char const* member;
 };
-constexpr MapFlag kMapFlags[] = {{"--against", "against"},      {"--rest", "rest"},
-                                 {"--bands", "bands"},          {"--origin", "origin"},
-                                 {"--vector", "isVector"},      {"--space", "space"},
-                                 {"--field", "field"},          {"--normalize", "isNormalized"},
-                                 {"--noise-octaves", "noise"},  {"--noise-frequency", "noise"},
-                                 {"--noise-gain", "noise"},     {"--noise-seed", "noise"},
-                                 {"--noise-ramp", "noiseRamp"}, {"--gain", "bandSum"},
-                                 {"--from", "bandSum"},         {"--carry", "bandSum"}};
+constexpr MapFlag kMapFlags[] = {{"--against", "against"},     {"--rest", "rest"},
+                                 {"--bands", "bands"},         {"--origin", "origin"},
+                                 {"--vector", "isVector"},     {"--space", "space"},
+                                 {"--field", "field"},         {"--normalize", "isNormalized"},
+                                 {"--noise-octaves", "noise"}, {"--noise-frequency", "noise"},
+                                 {"--noise-gain", "noise"},    {"--noise-seed", "noise"},
+                                 {"--noise-at", "noise"},      {"--noise-ramp", "noiseRamp"},
+                                 {"--gain", "bandSum"},        {"--from", "bandSum"},
+                                 {"--carry", "bandSum"}};
 
 /// Refuses pictures that cannot be: of what has no colours, or is no file to look up.
 void RefusePictures(BakeArguments const& a) {
@@ -191,6 +193,7 @@ void AddToReport(nlohmann::json& report, engine::BakeReport const& bake) {
     add("degenerate_samples", bake.degenerateSamples);
     add("clamped", bake.clamped);
     for (int tile : bake.tiles) report["tiles"].push_back(tile);
+    for (int level : bake.singularNoiseLevels) report["noise"]["singular_levels"].push_back(level);
 }
 
 /// An output that is complete; so a bake that fails later has told which files stay.
@@ -426,22 +429,6 @@ void AddMapOptions(CLI::App& verb, BakeArguments& a) {
         "CSV v0,v1,value of MESH's edges, for the map field (limn field -o x.edges.csv)");
 }
 
-/// Of the map noise.
-void AddNoiseOptions(CLI::App& verb, BakeArguments& a) {
-    AddNumberOption(verb, "--noise-octaves", a.options.noise.octaves,
-                    "levels of refinement with noise each (default 4)", {1, 10});
-    AddNumberOption(
-        verb, "--noise-frequency", a.options.noise.frequency,
-        "noise cells per unit length in the first octave (default: half a cell per mean edge)",
-        {1e-12, 1e12});
-    AddNumberOption(verb, "--noise-gain", a.options.noise.gain,
-                    "amplitude from octave to octave (default 0.5)", {0.0, 16.0});
-    AddNumberOption(verb, "--noise-seed", a.options.noise.seed,
-                    "another noise for every number (default 0)");
-    verb.add_option("--noise-ramp", a.noiseRamp,
-                    "noise as colours: '#rrggbb,#rrggbb,...' from low to high, equally spaced");
-}
-
 /// What a renderer has to know to show the maps right.
 constexpr char const* kConventions =
     "Conventions:\n"
@@ -476,7 +463,7 @@ Verb AddBake(CLI::App& app) {
         ->required();
     AddFileOptions(*verb, *a);
     AddMapOptions(*verb, *a);
-    AddNoiseOptions(*verb, *a);
+    AddNoiseOptions(*verb, a->options.noise, a->noiseRamp);
     verb->add_flag("--normalize", a->options.isNormalized,
                    "noise from 0 to 1 over the whole surface; fields of length 1");
     verb->add_flag("--audit", a->hasAudit,

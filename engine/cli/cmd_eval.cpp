@@ -1,22 +1,67 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
+#include "engine/cli/option_rules.h"
+#include "engine/cli/options/noise_options.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/evaluate/evaluate.h"
 #include "engine/evaluate/frames.h"
 #include "engine/evaluate/place_table.h"
 #include "engine/io/atomic_file.h"
+#include "engine/io/edge_values.h"
+#include "far_ext/error.h"
 
 namespace limn::cli {
 
 namespace {
 
 struct EvalArguments {
-    std::string mesh, places, output, frames;
+    std::string mesh, places, output, frames, field, noiseRamp;
     std::optional<eval::EvaluatorKind> evaluator;
+    engine::PlaceMapOptions maps;
 };
+
+/// What --maps says; a field is also asked for by its file.
+std::vector<std::string> ListMaps(EvalArguments const& a) {
+    std::vector<std::string> maps = a.maps.maps;
+    bool const isNamed = std::ranges::find(maps, "field") != maps.end();
+    if (!a.field.empty() && !isNamed) maps.emplace_back("field");
+    return maps;
+}
+
+/// Refuses options of maps that are not asked for.
+void CheckMapOptions(EvalArguments const& a, CLI::App const& verb) {
+    auto const maps = ListMaps(a);
+    auto const has = [&](char const* map) { return std::ranges::find(maps, map) != maps.end(); };
+    for (char const* flag : {"--maps", "--field"}) RefuseTogether(verb, {flag, "--frames"});
+    if (has("field") && a.field.empty())
+        throw Error(ErrorCode::BadOption, "--maps field needs --field");
+    if (!has("noise")) RefuseEach(verb, kNoiseFlags, "needs --maps noise");
+    if (!has("noise") && !has("field"))
+        RefuseEach(verb, {"--normalize"}, "needs --maps noise or --field");
+    if (!has("field") && !a.noiseRamp.empty())
+        RefuseEach(verb, {"--normalize"}, "has no effect with --noise-ramp");
+}
+
+/// The columns of maps.
+std::vector<engine::PlaceColumn> EvaluateMaps(EvalArguments const& a, engine::Model const& model,
+                                              engine::PlaceTable const& places, Context& context) {
+    engine::PlaceMapOptions options = a.maps;
+    options.maps = ListMaps(a);
+    if (options.maps.empty()) return {};
+    if (!a.noiseRamp.empty()) options.noiseRamp = engine::ColourRamp::Parse(a.noiseRamp);
+    if (!a.field.empty()) options.field = engine::ReadEdgeValues(a.field, model.GetLevel());
+    auto result = engine::NamingRows(places, [&] {
+        return engine::EvaluateMaps(model, places.GetPlaces(), options, context.GetJob());
+    });
+    if (std::ranges::find(options.maps, "noise") != options.maps.end())
+        context.GetReport()["noise"] = {{"singular_levels", result.singularLevels}};
+    return std::move(result.columns);
+}
 
 void EvaluateFrames(EvalArguments const& a, engine::Model const& model,
                     engine::PlaceTable const& places, Context& context) {
@@ -35,10 +80,12 @@ void EvaluateFrames(EvalArguments const& a, engine::Model const& model,
     report["precision_written"] = kPrecisionWords.GetWord(result.precision);
 }
 
-int Run(EvalArguments const& a, Context& context) {
+int Run(EvalArguments const& a, CLI::App const& verb, Context& context) {
     CommonOptions const& common = context.GetCommon();
+    CheckMapOptions(a, verb);
     context.KeepStdoutForData(a.output.empty());
-    context.KeepApart({{"MESH", a.mesh}, {"--at", a.places}}, {{"-o", a.output}});
+    context.KeepApart({{"MESH", a.mesh}, {"--at", a.places}, {"--field", a.field}},
+                      {{"-o", a.output}});
     auto const model = context.Load(a.mesh);
     engine::Extent const extent = engine::FindExtent(model.GetPositions());
     Precision const enough = engine::FindTablePrecision(extent);
@@ -59,11 +106,12 @@ int Run(EvalArguments const& a, Context& context) {
         return engine::EvaluateLimit(model, places.GetPlaces(), common.orientation,
                                      context.GetJob());
     });
+    auto const columns = EvaluateMaps(a, model, places, context);
     context.GetReport()["places_without_limit"] = values.CountWithoutLimit();
     context.GetJob().Start("writing " + (a.output.empty() ? "stdout" : a.output));
     Precision const precision = common.precision.value_or(enough);
     context.GetReport()["precision_written"] = kPrecisionWords.GetWord(precision);
-    std::string const text = engine::FormatValues(places.GetPlaces(), values, precision);
+    std::string const text = engine::FormatValues(places.GetPlaces(), values, precision, columns);
     if (a.output.empty())
         PrintData(text);
     else
@@ -92,12 +140,22 @@ Verb AddEval(CLI::App& app) {
                   "apply the frames' table in float: simd (limn's), osd-cpu or osd-omp "
                   "(OpenSubdiv's); default: in double")
         ->needs(frames);
+    verb->add_option("--maps", a->maps.maps,
+                     "further columns: noise, field (fx,fy,fz), primvar:NAME, as a bake has them; "
+                     "with commas between them")
+        ->delimiter(',')
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    verb->add_option("--field", a->field, "CSV v0,v1,value of MESH's edges: the columns fx,fy,fz");
+    AddNoiseOptions(*verb, a->maps.noise, a->noiseRamp);
+    verb->add_flag("--normalize", a->maps.isNormalized,
+                   "noise from 0 to 1 over the whole surface; fields of length 1");
     verb->footer(
         "Example:\n  printf 'face,s,t\\n0,0.5,0.5\\n' > places.csv\n  limn eval "
         "scenes/spot/spot.obj --at places.csv\n"
         "  limn eval walk.0001.obj --at places.csv --frames 'walk.{frame}.obj' -o "
         "'walk.{frame}.csv'");
-    return {verb, [a](Context& context) { return Run(*a, context); }};
+    return {verb, [a, verb](Context& context) { return Run(*a, *verb, context); }};
 }
 
 }  // namespace limn::cli

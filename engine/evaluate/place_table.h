@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/evaluate/evaluate.h"
+#include "engine/evaluate/place_columns.h"
 #include "engine/evaluate/places.h"
 #include "engine/scene/extent.h"
 
@@ -46,6 +47,8 @@ Precision FindTablePrecision(Extent const& mesh);
 /// CSV text of places and their values, one row per place.
 ///
 /// \param precision  float: 9 significant digits, double: 17
-std::string FormatValues(PlaceArrays const& places, LimitValues const& values, Precision precision);
+/// \param more       columns behind those of the limit
+std::string FormatValues(PlaceArrays const& places, LimitValues const& values, Precision precision,
+                         std::vector<PlaceColumn> const& more = {});
 
 }  // namespace limn::engine

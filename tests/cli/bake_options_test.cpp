@@ -80,6 +80,7 @@ std::vector<Row> const kRows{
     {"--noise-frequency", kNoise + Words{"--noise-frequency", "3"}, kNoise},
     {"--noise-gain", kNoise + Words{"--noise-gain", "0.9"}, kNoise},
     {"--noise-seed", kNoise + Words{"--noise-seed", "7"}, kNoise},
+    {"--noise-at", kNoise + Words{"--noise-at", "vertex"}, kNoise},
     {"--noise-ramp", kNoise + Words{"--noise-ramp", "#000000,#ff8000"}, kNoise},
     {"--groups", {"--groups", "red"}},
     {"--scheme", {"--scheme", "bilinear", "--maps", "position"}, {"--maps", "position"}},
@@ -148,7 +149,11 @@ std::vector<MapRow> const kTangentRows{
       {"--carry", "object"},
       {"--vector"},
       {"--space", "tangent"}}},
-    {"noise", {{"--normalize"}, {"--noise-frequency", "3"}, {"--noise-gain", "0.9"}}}};
+    {"noise",
+     {{"--normalize"},
+      {"--noise-frequency", "3"},
+      {"--noise-gain", "0.9"},
+      {"--noise-at", "vertex"}}}};
 
 Words List(Flags const& flags) {
     Words words;
