@@ -55,6 +55,8 @@ std::vector<Run> const kRuns{
     {"FitDirect", {"fit", "MESH", "-o", "OUT.obj", "--method", "direct"}},
     {"Bands", {"bands", "MESH", "-o", "OUT", "--count", "20"}},
     {"BandsOfAnother", {"bands", "MESH", "-o", "OUT.obj", "--from", "MESH", "--bands", "200-"}},
+    {"Combine",
+     {"combine", "MESH", "-o", "OUT.obj", "--offset", "MESH,MESH", "--offset", "MESH,MESH"}},
     {"Denoise", {"denoise", "MESH", "-o", "OUT.obj", "--steps", "200"}},
     {"Sharpen", {"sharpen", "MESH", "-o", "OUT.obj", "--steps", "200"}},
     {"Morph", {"morph", "MESH", "MESH", "-o", "OUT", "--steps", "50"}},

@@ -46,6 +46,7 @@ std::vector<VerbRun> const kRuns{
     {"bands",
      {"MESH", "-o", "OUT/a.obj", "--from", "MESH", "--bands", "1-"},
      {"filtering", "finding local frames", "writing"}},
+    {"combine", {"MESH", "-o", "OUT/a.obj", "--scale", "2"}, {"reading", "writing"}},
     {"denoise", {"MESH", "-o", "OUT/a.obj"}, {"filtering", "writing"}},
     {"sharpen", {"MESH", "-o", "OUT/a.obj"}, {"filtering", "writing"}},
     {"morph", {"MESH", "MESH", "-o", "OUT/a", "--steps", "2"}, {"morphing", "writing"}},
