@@ -57,6 +57,9 @@ BakeReport BakeTo(BakeDestination& destination, std::string const& pattern, Mode
 
     std::vector<std::string> movedPlaces;
     baker.AddCounts(report, movedPlaces);
+    for (auto const& map : maps) {
+        for (int level : map->GetSingularLevels()) report.singularNoiseLevels.push_back(level);
+    }
     if (report.outputs.empty() && !options.mayBeEmpty) {
         bool const isAnyBaked = std::ranges::find(faces.isBaked, 1) != faces.isBaked.end();
         throw Error(ErrorCode::BadMesh,

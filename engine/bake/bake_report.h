@@ -39,6 +39,7 @@ struct BakeReport {
     std::vector<BakeOutput> outputs;
     std::vector<FileLayout> files;          ///< what outputs of each name hold
     std::vector<Index> facesWithoutTexels;  ///< of those selected
+    std::vector<int> singularNoiseLevels;   ///< as SurfaceNoise's
 };
 
 }  // namespace limn::engine

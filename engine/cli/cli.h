@@ -150,6 +150,7 @@ Verb AddInfo(CLI::App& app);
 Verb AddEval(CLI::App& app);
 Verb AddBake(CLI::App& app);
 Verb AddBands(CLI::App& app);
+Verb AddCombine(CLI::App& app);
 Verb AddDenoise(CLI::App& app);
 Verb AddField(CLI::App& app);
 Verb AddFit(CLI::App& app);

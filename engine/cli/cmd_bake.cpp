@@ -18,9 +18,11 @@
 #include "engine/cli/names.h"
 #include "engine/cli/option_names.h"
 #include "engine/cli/options/bake_values.h"
+#include "engine/cli/options/band_options.h"
 #include "engine/cli/options/choices.h"
 #include "engine/cli/options/far_limit_option.h"
 #include "engine/cli/options/nearest_words.h"
+#include "engine/cli/options/noise_options.h"
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/option_rules.h"
 #include "engine/cli/options/word_option.h"
@@ -37,6 +39,7 @@ struct BakeArguments {
     std::vector<std::string> meshes, tiles, seamBounds;
     std::string size = "2048", against, rest, fieldPath, encode, noiseRamp, previewRange, half;
     std::optional<std::string> origin;
+    BandArguments bands;
     bool hasAudit = false, hasPicture = false;
     std::vector<double> view{1.0, 0.6, 0.8};
     engine::AuditBounds bounds;
@@ -73,7 +76,9 @@ constexpr MapFlag kMapFlags[] = {{"--against", "against"},     {"--rest", "rest"
                                  {"--field", "field"},         {"--normalize", "isNormalized"},
                                  {"--noise-octaves", "noise"}, {"--noise-frequency", "noise"},
                                  {"--noise-gain", "noise"},    {"--noise-seed", "noise"},
-                                 {"--noise-ramp", "noiseRamp"}};
+                                 {"--noise-at", "noise"},      {"--noise-ramp", "noiseRamp"},
+                                 {"--gain", "bandSum"},        {"--from", "bandSum"},
+                                 {"--carry", "bandSum"}};
 
 /// Refuses pictures that cannot be: of what has no colours, or is no file to look up.
 void RefusePictures(BakeArguments const& a) {
@@ -121,6 +126,16 @@ void RefuseWithoutEffect(CLI::App const& verb, std::vector<std::string> const& m
         RefuseEach(verb, {"--audit-bound", "--seam-bound"}, "needs --audit");
 }
 
+/// How many bands, or the one sum of them.
+void ChooseBands(BandArguments const& a, engine::BakeOptions& options) {
+    RefuseWithoutFrom(a);
+    if (a.from.empty() && !a.bands.empty())
+        options.bands = ParseNumber<int>("--bands", a.bands, {1, 64});
+    if (!a.IsSum()) return;
+    std::optional<int> const count = a.from.empty() ? std::optional(options.bands) : std::nullopt;
+    options.bandSum = MakeBandSum(a, count, "--bands");
+}
+
 engine::BakeOptions MakeOptions(BakeArguments const& a, CommonOptions const& common) {
     engine::BakeOptions options = a.options;
     if (!a.encode.empty()) options.encoding = ParseEncoding(a.encode);
@@ -129,6 +144,7 @@ engine::BakeOptions MakeOptions(BakeArguments const& a, CommonOptions const& com
     if (!a.previewRange.empty()) options.previewRange = engine::PreviewRange::Parse(a.previewRange);
     options.isHalf = !a.half.empty();
     options.halfMaps = ParseHalfMaps(a.half, options.maps);
+    ChooseBands(a.bands, options);
     auto const [width, height] = ParseTexelSize("--size", a.size, {1, 65536});
     options.width = width;
     options.height = height;
@@ -150,6 +166,7 @@ void AddToReport(nlohmann::json& report, engine::BakeReport const& bake) {
     add("degenerate_samples", bake.degenerateSamples);
     add("clamped", bake.clamped);
     for (int tile : bake.tiles) report["tiles"].push_back(tile);
+    for (int level : bake.singularNoiseLevels) report["noise"]["singular_levels"].push_back(level);
 }
 
 /// An output that is complete; so a bake that fails later has told which files stay.
@@ -236,13 +253,15 @@ std::vector<Bake> PlanBakes(BakeArguments const& a, engine::BakeOptions const& o
         }
     }
     for (std::string const& path : a.meshes) names.Refuse(path, "an input");
-    for (std::string const& path : {a.against, a.rest, a.fieldPath}) {
+    for (std::string const& path : {a.against, a.rest, a.fieldPath, a.bands.from}) {
         if (!path.empty()) names.Refuse(path, "an input");
     }
     std::string const& report = context.GetCommon().reportPath;
     if (!report.empty() && report != "-") names.Refuse(report, "the report");
-    std::vector<NamedFile> read{
-        {"--against", a.against}, {"--rest", a.rest}, {"--field", a.fieldPath}};
+    std::vector<NamedFile> read{{"--against", a.against},
+                                {"--rest", a.rest},
+                                {"--field", a.fieldPath},
+                                {"--from", a.bands.from}};
     for (std::string const& path : a.meshes) read.push_back({"MESH", path});
     context.KeepApart(read, {});  // the report from inputs
     return bakes;
@@ -280,6 +299,7 @@ std::vector<std::string> RunBake(BakeArguments const& a, Bake& bake,
     if (!a.fieldPath.empty()) options.field = engine::ReadEdgeValues(a.fieldPath, model.GetLevel());
     if (!a.against.empty()) options.against = context.Load(a.against);
     if (!a.rest.empty()) options.rest = context.Load(a.rest);
+    if (!a.bands.from.empty()) options.bandSum->from = context.Load(a.bands.from);
     auto const report = engine::Bake(model, options, context.GetJob());
     AddToReport(context.GetReport(), report);
     DrawPictures(a, model, options, report, context);
@@ -380,9 +400,11 @@ void AddMapOptions(CLI::App& verb, BakeArguments& a) {
     verb.add_option("--origin", a.origin,
                     "X,Y,Z taken off the map position, or auto: a round point near the mesh's "
                     "middle; header limn:origin");
-    AddNumberOption(verb, "--bands", a.options.bands,
-                    "of the map bands: frequency bands, their smooth base included (default 4)",
-                    {1, 64});
+    AddBandOptions(verb, a.bands,
+                   "of the map bands: frequency bands, their smooth base included (default 4, at "
+                   "most 64); with --from which of that mesh's, from 0: I-J, I- (with the "
+                   "remainder) or one",
+                   std::to_string(a.options.bands));
     verb.add_flag(
         "--vector", a.options.isVector,
         "displacement and bands as whole vectors (default: only their part along the "
@@ -393,22 +415,6 @@ void AddMapOptions(CLI::App& verb, BakeArguments& a) {
     verb.add_option(
         "--field", a.fieldPath,
         "CSV v0,v1,value of MESH's edges, for the map field (limn field -o x.edges.csv)");
-}
-
-/// Of the map noise.
-void AddNoiseOptions(CLI::App& verb, BakeArguments& a) {
-    AddNumberOption(verb, "--noise-octaves", a.options.noise.octaves,
-                    "levels of refinement with noise each (default 4)", {1, 10});
-    AddNumberOption(
-        verb, "--noise-frequency", a.options.noise.frequency,
-        "noise cells per unit length in the first octave (default: half a cell per mean edge)",
-        {1e-12, 1e12});
-    AddNumberOption(verb, "--noise-gain", a.options.noise.gain,
-                    "amplitude from octave to octave (default 0.5)", {0.0, 16.0});
-    AddNumberOption(verb, "--noise-seed", a.options.noise.seed,
-                    "another noise for every number (default 0)");
-    verb.add_option("--noise-ramp", a.noiseRamp,
-                    "noise as colours: '#rrggbb,#rrggbb,...' from low to high, equally spaced");
 }
 
 /// What a renderer has to know to show the maps right.
@@ -445,7 +451,7 @@ Verb AddBake(CLI::App& app) {
         ->required();
     AddFileOptions(*verb, *a);
     AddMapOptions(*verb, *a);
-    AddNoiseOptions(*verb, *a);
+    AddNoiseOptions(*verb, a->options.noise, a->noiseRamp);
     verb->add_flag("--normalize", a->options.isNormalized,
                    "noise from 0 to 1 over the whole surface; fields of length 1");
     verb->add_flag("--audit", a->hasAudit,

@@ -18,7 +18,7 @@ void AddArguments(CLI::App& verb, FilterArguments<Options>& a) {
     verb.add_option("MESH", a.mesh, "OBJ, PLY or OFF")->required();
     verb.add_option("-o,--output", a.output, "mesh to write, .obj or .ply")->required();
     AddNumberOption(verb, "--steps", a.options.steps, "how often (default 1)", {1, 1000});
-    AddAlpha(verb, a.options.alpha);
+    AddAlpha(verb, a.options.rule);
 }
 
 /// Loads, filters the positions and writes, with the sizes before and after in the report.
@@ -29,12 +29,7 @@ int Run(FilterArguments<Options> const& a, Context& context,
     context.KeepApart({{"MESH", a.mesh}}, {{"-o", a.output}});
     auto const model = context.Load(a.mesh);
     context.GetReport()["before"] = DescribeExtent(model, model.GetPositions());
-    engine::Scene output = model.MakeScene();
-    output.positions = filter(model, a.options, context.GetJob());
-    Precision const precision = context.ChoosePrecision(a.output, output.positions);
-    engine::RoundAsWritten(a.output, precision, output.positions);
-    context.GetReport()["after"] = DescribeExtent(model, output.positions);
-    context.WriteMesh(a.output, output, precision);
+    WriteFiltered(a.output, model, filter(model, a.options, context.GetJob()), context);
     return kDone;
 }
 

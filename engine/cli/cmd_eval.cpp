@@ -1,26 +1,68 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
 #include "engine/cli/options/evaluator_option.h"
 #include "engine/cli/options/far_limit_option.h"
+#include "engine/cli/options/noise_options.h"
 #include "engine/cli/options/option_rules.h"
 #include "engine/evaluate/evaluate.h"
-#include "engine/evaluate/field_values.h"
 #include "engine/evaluate/frames.h"
 #include "engine/evaluate/place_table.h"
 #include "engine/io/atomic_file.h"
 #include "engine/io/edge_values.h"
+#include "far_ext/error.h"
 
 namespace limn::cli {
 
 namespace {
 
 struct EvalArguments {
-    std::string mesh, places, output, frames, field;
+    std::string mesh, places, output, frames, field, noiseRamp;
     FarLimitArguments far;
+    engine::PlaceMapOptions maps;
 };
+
+/// What --maps says; a field is also asked for by its file.
+std::vector<std::string> ListMaps(EvalArguments const& a) {
+    std::vector<std::string> maps = a.maps.maps;
+    bool const isNamed = std::ranges::find(maps, "field") != maps.end();
+    if (!a.field.empty() && !isNamed) maps.emplace_back("field");
+    return maps;
+}
+
+/// Refuses options of maps that are not asked for.
+void CheckMapOptions(EvalArguments const& a, CLI::App const& verb) {
+    auto const maps = ListMaps(a);
+    auto const has = [&](char const* map) { return std::ranges::find(maps, map) != maps.end(); };
+    for (char const* flag : {"--maps", "--field"}) RefuseTogether(verb, {flag, "--frames"});
+    if (has("field") && a.field.empty())
+        throw Error(ErrorCode::BadOption, "--maps field needs --field");
+    if (!has("noise")) RefuseEach(verb, kNoiseFlags, "needs --maps noise");
+    if (!has("noise") && !has("field"))
+        RefuseEach(verb, {"--normalize"}, "needs --maps noise or --field");
+    if (!has("field") && !a.noiseRamp.empty())
+        RefuseEach(verb, {"--normalize"}, "has no effect with --noise-ramp");
+}
+
+/// The columns of maps.
+std::vector<engine::PlaceColumn> EvaluateMaps(EvalArguments const& a, engine::Model const& model,
+                                              engine::PlaceTable const& places, Context& context) {
+    engine::PlaceMapOptions options = a.maps;
+    options.maps = ListMaps(a);
+    if (options.maps.empty()) return {};
+    if (!a.noiseRamp.empty()) options.noiseRamp = engine::ColourRamp::Parse(a.noiseRamp);
+    if (!a.field.empty()) options.field = engine::ReadEdgeValues(a.field, model.GetLevel());
+    auto result = engine::NamingRows(places, [&] {
+        return engine::EvaluateMaps(model, places.GetPlaces(), options, context.GetJob());
+    });
+    if (std::ranges::find(options.maps, "noise") != options.maps.end())
+        context.GetReport()["noise"] = {{"singular_levels", result.singularLevels}};
+    return std::move(result.columns);
+}
 
 void EvaluateFrames(EvalArguments const& a, engine::Model const& model,
                     engine::PlaceTable const& places, eval::TableEvaluator* evaluator,
@@ -66,6 +108,7 @@ void CheckOptions(EvalArguments const& a, CLI::App const& verb) {
 
 int Run(EvalArguments const& a, CLI::App const& verb, Context& context) {
     CheckOptions(a, verb);
+    CheckMapOptions(a, verb);
     CommonOptions const& common = context.GetCommon();
     auto const evaluator = MakeEvaluator(a.far.evaluator, common.precision);
     context.KeepStdoutForData(a.output.empty());
@@ -90,17 +133,13 @@ int Run(EvalArguments const& a, CLI::App const& verb, Context& context) {
     }
     auto const values = engine::NamingRows(
         places, [&] { return Evaluate(a, model, places, evaluator.get(), context); });
+    auto const columns = EvaluateMaps(a, model, places, context);
     if (evaluator) context.GetReport()["evaluator"] = DescribeEvaluator(*evaluator);
     context.GetReport()["places_without_limit"] = values.CountWithoutLimit();
-    std::vector<double> field;
-    if (!a.field.empty())
-        field = engine::EvaluateField(model, places.GetPlaces(),
-                                      engine::ReadEdgeValues(a.field, model.GetLevel()),
-                                      engine::ChooseFieldLevels(model), context.GetJob());
     context.GetJob().Start("writing " + (a.output.empty() ? "stdout" : a.output));
     Precision const precision = common.precision.value_or(enough);
     context.GetReport()["precision_written"] = kPrecisionWords.GetWord(precision);
-    std::string const text = engine::FormatValues(places.GetPlaces(), values, precision, field);
+    std::string const text = engine::FormatValues(places.GetPlaces(), values, precision, columns);
     if (a.output.empty())
         PrintData(text);
     else
@@ -119,18 +158,23 @@ Verb AddEval(CLI::App& app) {
     auto* const output =
         verb->add_option("-o,--output", a->output,
                          "CSV to write (default stdout); with --frames a name with {frame}");
-    auto* const frames =
-        verb->add_option(
-                "--frames", a->frames,
-                "the same places in every frame: a folder of meshes, or a file name with {frame}; "
-                "MESH gives topology and tags")
-            ->needs(output);
-    verb->add_option("--field", a->field,
-                     "CSV v0,v1,value: a field along edges of MESH; columns fx,fy,fz have its "
-                     "limit's vectors")
-        ->excludes(frames);
+    verb->add_option(
+            "--frames", a->frames,
+            "the same places in every frame: a folder of meshes, or a file name with {frame}; "
+            "MESH gives topology and tags")
+        ->needs(output);
     AddEvaluatorOption(*verb, a->far.evaluator, "the table of places, or far's,");
     AddFarLimitOptions(*verb, a->far, "in place of the limit");
+    verb->add_option("--maps", a->maps.maps,
+                     "further columns: noise, field (fx,fy,fz), primvar:NAME, as a bake has them; "
+                     "with commas between them")
+        ->delimiter(',')
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    verb->add_option("--field", a->field, "CSV v0,v1,value of MESH's edges: the columns fx,fy,fz");
+    AddNoiseOptions(*verb, a->maps.noise, a->noiseRamp);
+    verb->add_flag("--normalize", a->maps.isNormalized,
+                   "noise from 0 to 1 over the whole surface; fields of length 1");
     verb->footer(
         "Example:\n  printf 'face,s,t\\n0,0.5,0.5\\n' > places.csv\n  limn eval "
         "scenes/spot/spot.obj --at places.csv\n"

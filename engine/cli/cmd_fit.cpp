@@ -3,12 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "engine/cli/cli.h"
-#include "engine/cli/names.h"
+#include "engine/cli/filter_options.h"
 #include "engine/cli/options/far_limit_option.h"
-#include "engine/cli/options/number_option.h"
 #include "engine/cli/options/option_rules.h"
-#include "engine/cli/options/word_option.h"
 #include "engine/fit/fit.h"
 #include "engine/io/matrix_market.h"
 #include "engine/io/mesh_writer.h"
@@ -146,9 +143,11 @@ int Run(FitArguments const& a, CLI::App const& verb, Context& context) {
     engine::RequireMeshEnding(a.output);
     if (options.method == eval::SolveMethod::Direct)
         RefuseEach(verb, {"--max-iterations"}, "has no effect with --method direct");
-    if (options.keepsTopology && options.alpha == 0.0) {
+    bool const isStationary = options.alphaRule == far_ext::LimitOptions::AlphaRule::Stationary;
+    if (options.keepsTopology && (options.alpha == 0.0 || isStationary)) {
         throw Error(ErrorCode::BadOption,
-                    "--keep-topology: without --alpha the topology is kept anyway");
+                    fmt::format("--keep-topology: {} the topology is kept anyway",
+                                isStationary ? "with --alpha-rule stationary" : "without --alpha"));
     }
     if (!a.matrix.empty()) RequireMatrixEnding("--write-matrix", a.matrix);
     context.KeepApart({{"MESH", a.mesh}}, {{"-o", a.output}, {"--write-matrix", a.matrix}});
@@ -168,6 +167,12 @@ int Run(FitArguments const& a, CLI::App const& verb, Context& context) {
             fmt::format("{}: its limit passes through the data only if the first step is taken "
                         "with alpha {}, which no other "
                         "program does",
+                        a.output, options.alpha));
+    }
+    if (isStationary && options.alpha > 0.0) {
+        context.GetJob().Warn(
+            fmt::format("{}: its limit passes through the data only if every step is taken with "
+                        "alpha {}, as limn refine --alpha does and no other program",
                         a.output, options.alpha));
     }
     Write(a, model, result, context);
@@ -191,12 +196,14 @@ Verb AddFit(CLI::App& app) {
     AddNumberOption(*verb, "--max-iterations", a->options.maxIterations,
                     "applications of the limit matrix (default 1000); auto factorises after them",
                     {1, 100000000});
-    AddNumberOption(*verb, "--alpha", a->options.alpha,
-                    "generalised Catmull-Clark in the first step, 0 (default) to 1; the result is "
-                    "one level finer",
-                    {0.0, 1.0});
+    auto* const alpha =
+        AddNumberOption(*verb, "--alpha", a->options.alpha,
+                        "generalised Catmull-Clark, 0 (default) to 1; in the first step, the "
+                        "result is one level finer",
+                        {0.0, 1.0});
+    AddAlphaRule(*verb, a->options.alphaRule, alpha);
     verb->add_flag("--keep-topology", a->options.keepsTopology,
-                   "with --alpha: write the control mesh before that step");
+                   "with --alpha in the first step: write the control mesh before that step");
     AddNumberOption(*verb, "--at-level", a->level,
                     "refine the mesh so often first, and fit the refined points (default 0)",
                     {0, 10});

@@ -4,13 +4,21 @@
 #include "engine/cli/filter_options.h"
 #include "engine/cli/options/option_rules.h"
 #include "engine/fit/morph.h"
+#include "engine/fit/morph_schedule.h"
 #include "engine/io/mesh_writer.h"
 
 namespace limn::cli {
 
 namespace {
 
-std::string NameStep(std::string const& prefix, int step) {
+struct MorphArguments {
+    std::string from, to, prefix, schedule;
+    int numSteps = 10;
+    engine::MorphStep step;
+    engine::MorphOptions options;
+};
+
+std::string NameStep(std::string const& prefix, size_t step) {
     return fmt::format("{}.{:04}.obj", prefix, step);
 }
 
@@ -21,14 +29,51 @@ Precision ChoosePrecision(std::string const& prefix, engine::Model const& from,
     return context.ChoosePrecision(prefix, (isEndEnough ? from : to).GetPositions());
 }
 
+engine::MorphOptions MakeOptions(MorphArguments const& a) {
+    engine::MorphOptions options = a.options;
+    if (a.schedule.empty())
+        options.steps.assign(static_cast<size_t>(a.numSteps), a.step);
+    else
+        options.steps = engine::ReadMorphSchedule(a.schedule);
+    return options;
+}
+
+int Run(MorphArguments const& a, CLI::App const& verb, Context& context) {
+    for (char const* flag : {"--detail", "--rate", "--steps"})
+        RefuseTogether(verb, {"--schedule", flag});
+    std::vector<NamedFile> const read{{"FROM", a.from}, {"TO", a.to}, {"--schedule", a.schedule}};
+    context.KeepApart(read, {});
+    auto const options = MakeOptions(a);
+    std::vector<NamedFile> written;
+    for (size_t step = 1; step <= options.steps.size(); ++step)
+        written.push_back({"-o", NameStep(a.prefix, step)});
+    context.KeepApart(read, written);
+    auto const from = context.Load(a.from), to = context.Load(a.to);
+    engine::Morph morph(from, to, options);
+    context.GetReport()["before"] = DescribeExtent(from, from.GetPositions());
+    engine::Scene output = to.MakeScene();
+    Precision const precision = ChoosePrecision(a.prefix, from, to, context);
+    engine::MeshSequence files;
+    auto outputs = nlohmann::json::array();
+    std::vector<std::string> warnings;
+    for (auto const& [option, path] : written) {
+        output.positions = morph.MakeNext(context.GetJob());
+        context.GetJob().Start("writing " + path);
+        engine::RoundAsWritten(path, precision, output.positions);
+        auto const leftOut = files.Add(path, output, precision);
+        if (outputs.empty()) warnings = leftOut;  // one file speaks for all
+        outputs.push_back(DescribeOutput(path, to, output.positions, precision));
+    }
+    context.GetReport()["after"] = DescribeExtent(to, output.positions);
+    files.Commit();
+    context.GetReport()["outputs"] = std::move(outputs);
+    context.Warn(warnings);
+    return kDone;
+}
+
 }  // namespace
 
 Verb AddMorph(CLI::App& app) {
-    struct MorphArguments {
-        std::string from, to, prefix;
-        int steps = 10;
-        engine::MorphOptions options;
-    };
     auto const a = std::make_shared<MorphArguments>();
     CLI::App* const verb =
         app.add_subcommand("morph", "Make the meshes in between two meshes of the same topology");
@@ -37,42 +82,20 @@ Verb AddMorph(CLI::App& app) {
         ->required();
     verb->add_option("-o,--output", a->prefix, "PREFIX, without an ending, of PREFIX.0001.obj ...")
         ->required();
-    AddNumberOption(*verb, "--detail", a->options.detail,
+    AddNumberOption(*verb, "--detail", a->step.detail,
                     "the last band of the difference to keep (default 2)", {0, 1000});
-    AddNumberOption(*verb, "--rate", a->options.rate,
+    AddNumberOption(*verb, "--rate", a->step.rate,
                     "share of the difference that a step keeps (default 0.8)", {1e-6, 1.0 - 1e-6});
-    AddNumberOption(*verb, "--steps", a->steps, "number of meshes (default 10)", {1, 9999});
-    AddAlpha(*verb, a->options.alpha);
+    AddNumberOption(*verb, "--steps", a->numSteps, "number of meshes (default 10)",
+                    {1, engine::kMaxMorphSteps});
+    verb->add_option("--schedule", a->schedule,
+                     "CSV step,detail,rate with a row for each mesh, in place of these three");
+    verb->add_flag("--exact-end", a->options.endsExactly,
+                   "the last mesh is TO: what the steps leave of the difference is taken off on "
+                   "the way");
+    AddAlpha(*verb, a->options.rule);
     verb->footer("Example:\n  limn morph neutral.obj smile.obj -o out/smile --steps 12");
-    return {verb, [a](Context& context) {
-                RequirePrefix("-o", a->prefix);
-                std::vector<NamedFile> written;
-                for (int step = 1; step <= a->steps; ++step)
-                    written.push_back({"-o", NameStep(a->prefix, step)});
-                context.KeepApart({{"FROM", a->from}, {"TO", a->to}}, written);
-                auto const from = context.Load(a->from), to = context.Load(a->to);
-                engine::Morph morph(from, to, a->options);
-                context.GetReport()["before"] = DescribeExtent(from, from.GetPositions());
-                engine::Scene output = to.MakeScene();
-                Precision const precision = ChoosePrecision(a->prefix, from, to, context);
-                engine::MeshSequence files;
-                auto outputs = nlohmann::json::array();
-                std::vector<std::string> warnings;
-                for (int step = 1; step <= a->steps; ++step) {
-                    std::string const path = NameStep(a->prefix, step);
-                    output.positions = morph.MakeNext(context.GetJob());
-                    context.GetJob().Start("writing " + path);
-                    engine::RoundAsWritten(path, precision, output.positions);
-                    auto const leftOut = files.Add(path, output, precision);
-                    if (step == 1) warnings = leftOut;
-                    outputs.push_back(DescribeOutput(path, to, output.positions, precision));
-                }
-                context.GetReport()["after"] = DescribeExtent(to, output.positions);
-                files.Commit();
-                context.GetReport()["outputs"] = std::move(outputs);
-                context.Warn(warnings);
-                return kDone;
-            }};
+    return {verb, [a, verb](Context& context) { return Run(*a, *verb, context); }};
 }
 
 }  // namespace limn::cli

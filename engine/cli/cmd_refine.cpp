@@ -6,6 +6,7 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
+#include "engine/cli/options/noise_options.h"
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/option_rules.h"
 #include "engine/cli/options/word_option.h"
@@ -13,7 +14,10 @@
 #include "engine/differential/differential.h"
 #include "engine/differential/edit_reader.h"
 #include "engine/differential/polyline_file.h"
+#include "engine/io/file.h"
 #include "engine/io/mesh_writer.h"
+#include "engine/noise/noise_scale.h"
+#include "engine/noise/surface_noise.h"
 #include "engine/scene/refine.h"
 #include "engine/scene/subdivision_names.h"
 #include "far_ext/error.h"
@@ -35,7 +39,11 @@ struct RefineArguments {
     std::optional<double> tolerance, tension;
     int levels = 1;
     bool isDifferential = false, toLimit = false, keepsResult = false, isCurve = false;
+    double alpha = 0.0;
     engine::DifferentialOptions options;
+    bool hasNoise = false, isNoiseNormalized = false;
+    engine::NoiseOptions noise;
+    std::string noiseRamp;
 };
 
 /// Refuses a mesh with other faces than the rule can have.
@@ -159,7 +167,40 @@ engine::DifferentialResult RefineDifferentially(RefineArguments const& a,
     return result;
 }
 
+void CheckNoise(RefineArguments const& a, CLI::App const& verb) {
+    if (!a.hasNoise) {
+        RefuseEach(verb, kNoiseFlags, "needs --noise");
+        return RefuseEach(verb, {"--normalize"}, "needs --noise");
+    }
+    RefuseTogether(verb, {"--noise-ramp", "--normalize"});
+    if (a.noiseRamp.empty() && engine::GetEnding(a.output) != ".ply") {
+        throw Error(ErrorCode::BadOption,
+                    "--noise: an OBJ holds no scalars; write a .ply, or colours by --noise-ramp");
+    }
+}
+
+/// Gives a refined mesh the noise of the model's limit surface at its vertices: a scalar, or
+/// colours, in place of such as there are.
+void AddNoise(RefineArguments const& a, engine::Model const& model, engine::Scene& mesh,
+              Context& context) {
+    context.GetJob().Start("making noise");
+    auto const noise = engine::FindVertexNoise(model, a.noise, a.levels, context.GetJob());
+    context.GetReport()["noise"] = {{"singular_levels", noise.singularLevels}};
+    std::optional<engine::ColourRamp> ramp;
+    if (!a.noiseRamp.empty()) ramp = engine::ColourRamp::Parse(a.noiseRamp);
+    engine::NoiseScale const scale(noise.low, noise.high, a.isNoiseNormalized, ramp);
+    engine::Primvar primvar{ramp ? "color" : "noise", scale.GetNumChannels(), {}};
+    std::vector<double> channels(static_cast<size_t>(scale.GetNumChannels()));
+    for (double value : noise.values) {
+        scale.Convert(value, channels);
+        for (double channel : channels) primvar.values.push_back(static_cast<float>(channel));
+    }
+    std::erase_if(mesh.primvars, [&](auto const& known) { return known.name == primvar.name; });
+    mesh.primvars.push_back(std::move(primvar));
+}
+
 void CheckSpace(RefineArguments const& a, CLI::App const& verb) {
+    if (a.isDifferential) RefuseEach(verb, {"--alpha"}, "is of --space spatial");
     if (!a.isDifferential)
         return RefuseEach(verb, kDifferentialOptions, "needs --space differential");
     if (a.toLimit) {
@@ -173,7 +214,7 @@ void CheckSpace(RefineArguments const& a, CLI::App const& verb) {
 int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& context) {
     constexpr char const* kWhy = "means nothing with --curve; leave it out";
     RefuseEach(verb, kDifferentialOptions, kWhy);
-    RefuseEach(verb, {"--limit", "--weld", "--tension"}, kWhy);
+    RefuseEach(verb, {"--limit", "--weld", "--tension", "--alpha", "--noise"}, kWhy);
     auto const rule =
         GetRule(a).IsInterpolating() ? eval::CurveRule::FourPoint : eval::CurveRule::CubicBSpline;
     context.GetJob().Start("reading " + a.mesh);
@@ -199,6 +240,7 @@ int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& contex
 
 int RunRefine(RefineArguments const& a, CLI::App const& verb, Context& context) {
     context.KeepApart({{"MESH", a.mesh}, {"--edit", a.editPath}}, {{"-o", a.output}});
+    CheckNoise(a, verb);
     if (a.isCurve) return RefineCurves(a, verb, context);
     CheckSpace(a, verb);
     far_ext::CheckTension(GetRule(a));
@@ -211,10 +253,11 @@ int RunRefine(RefineArguments const& a, CLI::App const& verb, Context& context) 
         result = RefineDifferentially(a, model, context);
     } else {
         result.mesh = engine::RefineUniformly(
-            model, {.levels = a.levels, .toLimit = a.toLimit, .rule = GetRule(a)},
+            model, {.levels = a.levels, .toLimit = a.toLimit, .rule = GetRule(a), .alpha = a.alpha},
             context.GetJob());
         result.report.precision = context.ChoosePrecision(a.output, result.mesh.positions);
     }
+    if (a.hasNoise) AddNoise(a, model, result.mesh, context);
     bool const isDone = result.report.converged;
     if (isDone || a.keepsResult) context.WriteMesh(a.output, result.mesh, result.report.precision);
     context.GetReport()["vertices"] = result.mesh.cage.numVertices;
@@ -241,6 +284,15 @@ Verb AddRefine(CLI::App& app) {
                     "2 (default 1)",
                     {0.0, 2.0});
     verb->add_flag("--limit", a->toLimit, "move the result's vertices to the limit surface");
+    AddNumberOption(*verb, "--alpha", a->alpha,
+                    "generalised Catmull-Clark in every step, 0 (default) to 1: the surface of "
+                    "limn fit --alpha-rule stationary",
+                    {0.0, 1.0});
+    verb->add_flag("--noise", a->hasNoise,
+                   "add noise on the limit surface as a scalar 'noise' (.ply) or, with "
+                   "--noise-ramp, as colours");
+    AddNoiseOptions(*verb, a->noise, a->noiseRamp);
+    verb->add_flag("--normalize", a->isNoiseNormalized, "noise from 0 to 1 over the whole surface");
     verb->add_flag("--curve", a->isCurve,
                    "MESH holds polylines (OBJ 'l'); their rule is cubic B-spline, or four-point "
                    "where --rule keeps vertices");

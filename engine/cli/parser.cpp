@@ -134,9 +134,10 @@ Parser::Parser() {
     _app.get_formatter()->column_width(34);
     _app.get_formatter()->label("SUBCOMMAND", "VERB");
     _app.option_defaults()->always_capture_default();
-    _verbs = {AddInfo(_app),    AddEval(_app),  AddBake(_app),   AddRefine(_app),
-              AddMeasure(_app), AddFit(_app),   AddBands(_app),  AddDenoise(_app),
-              AddSharpen(_app), AddMorph(_app), AddSmooth(_app), AddField(_app)};
+    _verbs = {AddInfo(_app),    AddEval(_app),  AddBake(_app),    AddRefine(_app),
+              AddMeasure(_app), AddFit(_app),   AddBands(_app),   AddDenoise(_app),
+              AddSharpen(_app), AddMorph(_app), AddCombine(_app), AddSmooth(_app),
+              AddField(_app)};
     for (Verb const& verb : _verbs) {
         verb.app->group("Verbs");
         verb.app->set_version_flag("--version", GetVersionText(), kVersionHelp);

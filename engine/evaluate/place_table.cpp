@@ -50,9 +50,10 @@ Precision FindTablePrecision(Extent const& mesh) {
 }
 
 std::string FormatValues(PlaceArrays const& places, LimitValues const& values, Precision precision,
-                         std::span<double const> field) {
+                         std::vector<PlaceColumn> const& more) {
     std::string text = "face,s,t,px,py,pz,nx,ny,nz,mean,gaussian,k1,k2,d1x,d1y,d1z";
-    text += field.empty() ? "\n" : ",fx,fy,fz\n";
+    for (PlaceColumn const& column : more) text += "," + column.name;
+    text += '\n';
     int const digits = precision == Precision::Double ? 17 : kShortDigits;
     auto const append = [&](double value) {
         fmt::format_to(std::back_inserter(text), ",{:.{}g}", value, digits);
@@ -68,7 +69,7 @@ std::string FormatValues(PlaceArrays const& places, LimitValues const& values, P
         for (auto const* column : {&values.mean, &values.gaussian, &values.k1, &values.k2})
             append((*column)[i]);
         appendVector(values.directions, i);
-        if (!field.empty()) appendVector(field, i);
+        for (PlaceColumn const& column : more) append(column.values[i]);
         text += '\n';
     }
     return text;

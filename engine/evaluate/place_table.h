@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/evaluate/evaluate.h"
+#include "engine/evaluate/place_columns.h"
 #include "engine/evaluate/places.h"
 #include "engine/scene/extent.h"
 
@@ -47,8 +48,8 @@ Precision FindTablePrecision(Extent const& mesh);
 /// CSV text of places and their values, one row per place.
 ///
 /// \param precision  float: 9 significant digits, double: 17
-/// \param field      three numbers per place for the columns fx,fy,fz; none: without them
+/// \param more       columns behind those of the limit
 std::string FormatValues(PlaceArrays const& places, LimitValues const& values, Precision precision,
-                         std::span<double const> field = {});
+                         std::vector<PlaceColumn> const& more = {});
 
 }  // namespace limn::engine

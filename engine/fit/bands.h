@@ -8,6 +8,7 @@
 #include "engine/scene/extent.h"
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
+#include "far_ext/limit/limit_row.h"
 
 namespace limn::engine {
 
@@ -25,16 +26,16 @@ struct Bands {
     std::vector<double> remainder;
 };
 
-/// \param alpha   generalised Catmull-Clark in the first step, 0 (plain) to 1
+/// \param rule    of the limit matrix: generalised Catmull-Clark has an alpha of 0 (plain) to 1
 /// \throws Error  BadOption: alpha outside [0, 1] or with a scheme that has none
 /// \throws Stopped
-Bands SplitIntoBands(Model const& model, int count, double alpha, Job& job);
+Bands SplitIntoBands(Model const& model, int count, far_ext::LimitOptions const& rule, Job& job);
 
 /// The mesh's positions with its lowest bands only.
 struct DenoiseOptions {
-    int detail = 2;      ///< the last band to keep
-    int steps = 1;       ///< how often
-    double alpha = 0.0;  ///< as SplitIntoBands
+    int detail = 2;                ///< the last band to keep
+    int steps = 1;                 ///< how often
+    far_ext::LimitOptions rule{};  ///< as SplitIntoBands
 };
 std::vector<double> Denoise(Model const& model, DenoiseOptions const& options, Job& job);
 
@@ -42,7 +43,7 @@ std::vector<double> Denoise(Model const& model, DenoiseOptions const& options, J
 struct SharpenOptions {
     int first = 2, last = 4;  ///< powers of the high-pass filter, from 1
     int steps = 1;
-    double alpha = 0.0;
+    far_ext::LimitOptions rule{};
 };
 
 /// \param job     told where the mesh outgrows itself

@@ -10,6 +10,7 @@
 
 #include "engine/scene/refine.h"
 #include "engine/scene/require_limit.h"
+#include "eval/fit/alpha_steps.h"
 #include "eval/surface/vertex_limits.h"
 #include "far_ext/rows/points.h"
 #include "far_ext/topology/refiner.h"
@@ -18,36 +19,19 @@ namespace limn::engine {
 
 namespace {
 
-using LimitRow = far_ext::LimitRow;
-
-/// What alpha adds to the children of smooth vertices: (alpha/n) V - (alpha/n^2) sum E.
-void AddAlphaStep(eval::LimitOperator const& A, double alpha, std::span<double const> control,
-                  size_t length, double* children) {
-    for (Index vertex = 0; vertex < A.GetNumVertices(); ++vertex) {
-        auto const& c = A.GetClass(vertex);
-        if (c.kind != LimitRow::Kind::Smooth) continue;
-        double const n = c.numEdges;
-        auto const edges = A.GetNeighbours(vertex).first(c.numEdges);
-        for (size_t k = 0; k < length; ++k) {
-            double sum = 0.0;
-            for (Index neighbour : edges) sum += control[neighbour * length + k];
-            double& child = children[vertex * length + k];
-            child += alpha / n * (control[vertex * length + k] - sum / n);
-        }
-    }
-}
+using AlphaRule = far_ext::LimitOptions::AlphaRule;
 
 /// One step of generalised Catmull-Clark. A vertex's child has its own number (OpenSubdiv's order).
 Scene RefineWithAlpha(Model const& control, double alpha, Job& job) {
-    auto const A = eval::LimitOperator::Build(control.GetRefiner(), 0, {.alpha = alpha});
+    eval::AlphaSteps const steps(control.GetRefiner(), 0, alpha);
     Scene fine = RefineUniformly(control, {.levels = 1}, job);
-    AddAlphaStep(A, alpha, control.GetPositions(), 3, fine.positions.data());
+    steps.Add(0, control.GetPositions(), 3, fine.positions);
     for (size_t i = 0; i < control.GetPrimvars().size(); ++i) {
         auto const& from = control.GetPrimvars()[i];
         std::vector<double> const values(from.values.begin(), from.values.end());
         std::vector<double> children(fine.primvars[i].values.begin(),
                                      fine.primvars[i].values.end());
-        AddAlphaStep(A, alpha, values, from.numChannels, children.data());
+        steps.Add(0, values, from.numChannels, children);
         std::transform(children.begin(), children.end(), fine.primvars[i].values.begin(),
                        [](double x) { return static_cast<float>(x); });
     }
@@ -75,16 +59,19 @@ int ChooseDepth(Scene const& mesh, double size, double tolerance) {
                       eval::FaceTree::kLimitDepth);
 }
 
-Certificate Judge(eval::VertexLimits const& limits, std::span<double const> data, double size,
-                  double tolerance) {
+/// \param reached   limits, those of the data's vertices first
+/// \param hasLimit  per vertex
+Certificate JudgeMisses(std::vector<double> const& reached, std::vector<char> const& hasLimit,
+                        std::span<double const> data, double tolerance) {
+    double const size = eval::FindSize(data, 3);
     Certificate certificate;
     double sum = 0.0;
-    far_ext::Points const reached(limits.values), wanted(data);
+    far_ext::Points const limits(reached), wanted(data);
     size_t count = 0;
     for (size_t i = 0; i < wanted.GetCount(); ++i) {
-        if (!limits.hasLimit[i]) continue;  // alpha moves it all the same
+        if (!hasLimit[i]) continue;  // alpha moves it all the same
         ++count;
-        double const miss = (reached[i] - wanted[i]).norm() / size;
+        double const miss = (limits[i] - wanted[i]).norm() / size;
         sum += miss * miss;
         if (miss <= certificate.max && certificate.worstVertex >= 0) continue;
         certificate.max = miss;
@@ -114,21 +101,41 @@ Certificate Certify(Scene const& mesh, Far::TopologyRefiner const& refiner,
                     std::span<double const> data, FitOptions const& options, Job& job,
                     FitResult& result) {
     job.Start("certifying");
-    double const size = eval::FindSize(data, 3);
     if (options.farLimit) {
         PlaceList places;
         Model const model = Model::Build(mesh);
         auto const vertices = AddVertexPlaces(model, places);
         result.far =
             CompareFarLimit(model, std::move(places), *options.farLimit, Orientation::Right, job);
-        return Judge(FindFarLimits(*result.far, vertices, mesh.positions), data, size,
-                     options.tolerance);
+        auto const limits = FindFarLimits(*result.far, vertices, mesh.positions);
+        return JudgeMisses(limits.values, limits.hasLimit, data, options.tolerance);
     }
     eval::LimitSurface const surface(refiner);
-    return Judge(eval::EvaluateVertexLimits(surface, mesh.positions, 3,
-                                            ChooseDepth(mesh, size, options.tolerance),
-                                            [&] { job.CheckStopped(); }),
-                 data, size, options.tolerance);
+    int const depth = ChooseDepth(mesh, eval::FindSize(data, 3), options.tolerance);
+    auto const limits =
+        eval::EvaluateVertexLimits(surface, mesh.positions, 3, depth, [&] { job.CheckStopped(); });
+    return JudgeMisses(limits.values, limits.hasLimit, data, options.tolerance);
+}
+
+/// Per vertex: some face round it has a limit.
+std::vector<char> FindVerticesWithLimit(Far::TopologyLevel const& level) {
+    std::vector<char> hasLimit(static_cast<size_t>(level.GetNumVertices()));
+    for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
+        auto const faces = level.GetVertexFaces(vertex);
+        hasLimit[vertex] = std::any_of(faces.begin(), faces.end(),
+                                       [&](Index face) { return !level.IsFaceHole(face); });
+    }
+    return hasLimit;
+}
+
+/// The same of a control mesh of the scheme with alpha in all steps.
+Certificate CertifyStationary(Scene const& mesh, Model const& data, FitOptions const& options,
+                              Job& job) {
+    job.Start("certifying");
+    Scene const fine = RefineUniformly(Model::Build(mesh),
+                                       {.levels = 1, .toLimit = true, .alpha = options.alpha}, job);
+    return JudgeMisses(fine.positions, FindVerticesWithLimit(data.GetLevel()), data.GetPositions(),
+                       options.tolerance);
 }
 
 /// Turns the result's control mesh, in double, into what the file will hold, and certifies that.
@@ -144,6 +151,11 @@ void RoundAndCertify(Precision precision, Model const& model, FitOptions const& 
     if (options.alpha == 0.0) {
         round();
         result.certificate = certify(result.mesh, model.GetRefiner());
+        return;
+    }
+    if (options.alphaRule == AlphaRule::Stationary) {
+        round();
+        result.certificate = CertifyStationary(result.mesh, model, options, job);
         return;
     }
     if (options.keepsTopology) round();
@@ -214,7 +226,8 @@ FitResult FitToLimit(Model const& model, FitOptions const& options, Job& job) {
     auto const start = std::chrono::steady_clock::now();
     if (options.alpha == 0.0) RequireLimit(model);  // else n-gons are subdivided first
     job.Start("building the limit matrix");
-    eval::Interpolator const interpolator(model.GetRefiner(), 0, {.alpha = options.alpha});
+    eval::Interpolator const interpolator(model.GetRefiner(), 0,
+                                          {.alpha = options.alpha, .alphaRule = options.alphaRule});
     eval::InterpolateOptions const solve{.method = options.method,
                                          .tolerance = options.tolerance,
                                          .maxIterations = options.maxIterations,

@@ -14,10 +14,12 @@ namespace limn::engine {
 
 struct FitOptions {
     eval::SolveMethod method = eval::SolveMethod::Automatic;
-    double tolerance = 1e-6;     ///< of max |M - A P| over the diagonal of the bounding box
-    int maxIterations = 1000;    ///< applications of A
-    double alpha = 0.0;          ///< generalised Catmull-Clark in the first step; 0: plain
-    bool keepsTopology = false;  ///< with alpha: the control mesh itself, before that step
+    double tolerance = 1e-6;   ///< of max |M - A P| over the diagonal of the bounding box
+    int maxIterations = 1000;  ///< applications of A
+    double alpha = 0.0;        ///< generalised Catmull-Clark; 0: plain
+    /// Alpha in the first step, or in all: then the result is the control mesh of that scheme.
+    far_ext::LimitOptions::AlphaRule alphaRule = far_ext::LimitOptions::AlphaRule::FirstStep;
+    bool keepsTopology = false;  ///< with alpha in the first step: the control mesh itself, before
     /// The file that the mesh is for: its coordinates are rounded to what that will hold. None:
     /// they stay doubles.
     std::optional<MeshTarget> target{};
@@ -28,7 +30,8 @@ struct FitOptions {
 
 /// How far the limit surface of the result, rounded as it is, passes from the vertices that were
 /// given (of those that have a limit), over the diagonal of their bounding box. Found without A: by
-/// refining towards each vertex (eval::EvaluateVertexLimits).
+/// refining towards each vertex (eval::EvaluateVertexLimits); with alpha in all steps by refining
+/// once, and the limits of that level.
 struct Certificate {
     double max = 0.0, rms = 0.0;
     Index worstVertex = -1;
@@ -36,8 +39,8 @@ struct Certificate {
 };
 
 struct FitResult {
-    Scene mesh;  ///< the control mesh; one level finer than the input with alpha, unless
-                 ///< keepsTopology
+    Scene mesh;  ///< the control mesh; one level finer than the input with alpha in the first step,
+                 ///< unless keepsTopology
     Precision precision = Precision::Double;  ///< what its coordinates are rounded to
     eval::SolveReport report;                 ///< of the positions, before
     std::vector<eval::SolveReport> primvars;  ///< of the model's primvars, in their order

@@ -1,53 +1,53 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/fit/morph.h"
 
-#include <fmt/format.h>
-
 #include "engine/scene/same_faces.h"
 #include "eval/fit/decompose.h"
 #include "far_ext/error.h"
 
 namespace limn::engine {
 
-namespace {
-
-std::string Describe(Model const& from, Model const& to, FaceDifference const& difference) {
-    switch (difference.kind) {
-        case FaceDifference::Kind::NumVertices:
-            return fmt::format("{} and {} vertices", difference.a, difference.b);
-        case FaceDifference::Kind::NumFaces:
-            return fmt::format("{} and {} faces", difference.a, difference.b);
-        default:
-            return fmt::format("{} has other vertices than {}", from.NameFace(difference.face),
-                               to.NameFace(difference.face));
-    }
-}
-
-void RequireSameFaces(Model const& from, Model const& to) {
-    auto const difference = FindFaceDifference(from.GetCage(), to.GetCage());
-    if (!difference) return;
-    throw Error(
-        ErrorCode::BadMesh,
-        fmt::format("{} and {} do not have the same faces: {}; a morph needs the same vertices and "
-                    "faces in the same order",
-                    from.GetPath(), to.GetPath(), Describe(from, to, *difference)));
-}
-
-}  // namespace
-
 Morph::Morph(Model const& from, Model const& to, MorphOptions const& options)
     : _to(to),
       _options(options),
-      _operator(eval::LimitOperator::Build(to.GetRefiner(), 0, {.alpha = options.alpha})),
+      _operator(eval::LimitOperator::Build(to.GetRefiner(), 0, options.rule)),
       _positions(from.GetPositions()) {
-    RequireSameFaces(from, to);
+    RequireSameFaces(from, to, "a morph");
+    for (MorphStep const& step : options.steps) _keptAtEnd *= step.rate;
+    if (options.endsExactly && !(_keptAtEnd < 1.0))
+        throw Error(ErrorCode::BadOption, "a morph whose steps keep all has no exact end");
+}
+
+void Morph::TakeStep(size_t step, std::vector<double>& positions) const {
+    auto const [detail, rate] = _options.steps[step];
+    eval::MorphStep(_operator, 3, detail, rate, _to.GetPositions(), positions);
+}
+
+/// Goes all the way beforehand, to know what is left at its end.
+void Morph::FindRest(Job& job) {
+    _rest = _positions;
+    for (size_t step = 0; step < _options.steps.size(); ++step) {
+        job.CheckStopped();
+        TakeStep(step, _rest);
+    }
+    for (size_t i = 0; i < _rest.size(); ++i) _rest[i] -= _to.GetPositions()[i];
 }
 
 std::vector<double> const& Morph::MakeNext(Job& job) {
+    if (_numMade == _options.steps.size())
+        throw Error(ErrorCode::BadOption, "a morph has as many frames as steps; all are made");
     job.CheckStopped();
     job.Start("morphing");
-    eval::MorphStep(_operator, 3, _options.detail, _options.rate, _to.GetPositions(), _positions);
-    return _positions;
+    if (_options.endsExactly && _numMade == 0) FindRest(job);
+    _kept *= _options.steps[_numMade].rate;
+    TakeStep(_numMade++, _positions);
+    if (!_options.endsExactly) return _positions;
+    if (_numMade == _options.steps.size()) return _to.GetPositions();
+
+    double const share = (1.0 - _kept) / (1.0 - _keptAtEnd);
+    _frame = _positions;
+    for (size_t i = 0; i < _frame.size(); ++i) _frame[i] -= share * _rest[i];
+    return _frame;
 }
 
 }  // namespace limn::engine

@@ -9,6 +9,7 @@
 #include <tbb/parallel_for.h>
 
 #include "engine/noise/gradient_noise.h"
+#include "engine/scene/refine.h"
 #include "eval/differential/refine_values.h"
 #include "eval/fit/interpolate.h"
 #include "eval/surface/surface_sample.h"
@@ -32,14 +33,14 @@ double FindFrequency(Far::TopologyLevel const& level, std::span<double const> po
     return length > 0.0 ? 0.5 * level.GetNumEdges() / length : 1.0;
 }
 
-/// One octave at the limit points of a level's vertices.
-std::vector<double> MakeOctave(std::span<double const> limitPoints, int octave, double frequency,
+/// One octave at points.
+std::vector<double> MakeOctave(std::span<double const> points, int octave, double frequency,
                                double amplitude, uint64_t seed, Job& job) {
-    std::vector<double> values(limitPoints.size() / 3);
+    std::vector<double> values(points.size() / 3);
     tbb::parallel_for(tbb::blocked_range<size_t>(0, values.size(), 4096), [&](auto const& range) {
         job.CheckStopped();
         for (size_t i = range.begin(); i != range.end(); ++i) {
-            double const* const x = &limitPoints[3 * i];
+            double const* const x = &points[3 * i];
             uint64_t const own =
                 seed + static_cast<uint64_t>(octave) * 0x9e3779b97f4a7c15ull;  // octaves differ
             values[i] = amplitude *
@@ -49,7 +50,8 @@ std::vector<double> MakeOctave(std::span<double const> limitPoints, int octave, 
     return values;
 }
 
-void CheckOptions(NoiseOptions const& options) {
+/// \return the level of the last octave
+int CheckOptions(Model const& model, NoiseOptions const& options) {
     if (options.octaves < 1 || options.octaves > 10)
         throw Error(ErrorCode::BadOption,
                     fmt::format("`octaves`: {} is not from 1 to 10", options.octaves));
@@ -57,15 +59,9 @@ void CheckOptions(NoiseOptions const& options) {
     if (!(frequency > 0.0 && std::isfinite(frequency)))
         throw Error(ErrorCode::BadOption,
                     fmt::format("`frequency`: {} is no number above 0", frequency));
-}
-
-}  // namespace
-
-SurfaceNoise::SurfaceNoise(Model const& model, NoiseOptions const& options, Job& job) {
-    auto const& cage = model.GetCage();
-    CheckOptions(options);
     int const levels = options.octaves - 1;
-    double const corners = static_cast<double>(cage.faceVertices.size()) * std::pow(4.0, levels);
+    double const corners =
+        static_cast<double>(model.GetCage().faceVertices.size()) * std::pow(4.0, levels);
     if (corners > 2e9) {
         throw Error(
             ErrorCode::TooLarge,
@@ -73,42 +69,95 @@ SurfaceNoise::SurfaceNoise(Model const& model, NoiseOptions const& options, Job&
                         "level; at most 2e9 can be indexed, take fewer octaves",
                         model.GetPath(), options.octaves, corners));
     }
-    auto const refiner = far_ext::CreateRefiner(cage);
-    if (levels > 0) {
-        Far::TopologyRefiner::UniformOptions uniform(levels);
-        uniform.fullTopologyInLastLevel = true;
-        refiner->RefineUniform(uniform);
-    }
+    return levels;
+}
+
+/// All octaves as control values of the last one's level, and their range over its limits.
+struct Octaves {
+    std::vector<double> control;
+    double low = 0.0, high = 0.0;
+    std::vector<int> singularLevels;
+};
+
+/// Control values of one octave.
+std::vector<double> FitOctave(Model const& model, eval::Interpolator const& interpolator, int level,
+                              std::vector<double> const& octave, Octaves& octaves, Job& job) {
+    std::vector<double> control(octave.size());
+    auto const report = interpolator.Solve(
+        octave, 1, control,
+        {.tolerance = 1e-9, .onIteration = [&](int, double) { job.CheckStopped(); }});
+    if (report.singularComponents.empty()) return control;
+    octaves.singularLevels.push_back(level);
+    job.Warn(
+        fmt::format("{}: noise of octave {}: on {} component{} all vertices have valence 3 "
+                    "and alternate, like a cube's; what alternates is taken out of it there",
+                    model.GetPath(), level + 1, report.singularComponents.size(),
+                    report.singularComponents.size() > 1 ? "s" : ""));
+    return control;
+}
+
+/// \param refiner  refined uniformly as far as the last octave, or farther
+Octaves AddUpOctaves(Model const& model, Far::TopologyRefiner const& refiner,
+                     NoiseOptions const& options, Job& job) {
+    Octaves octaves;
     std::vector<double> positions = model.GetPositions();
     double frequency =
         options.frequency ? *options.frequency : FindFrequency(model.GetLevel(), positions);
     double amplitude = 1.0;
-    for (int level = 0; level <= levels; ++level, frequency *= 2.0, amplitude *= options.gain) {
+    for (int level = 0; level < options.octaves; ++level) {
         job.CheckStopped();
         if (level > 0) {
-            positions = eval::RefineValues<3>(*refiner, level, positions);
-            _values = eval::RefineValues<1>(*refiner, level, _values);
+            positions = eval::RefineValues<3>(refiner, level, positions);
+            octaves.control = eval::RefineValues<1>(refiner, level, octaves.control);
         }
-        eval::Interpolator const interpolator(*refiner, level);
-        std::vector<double> const octave = MakeOctave(interpolator.FindLimits(positions, 3), level,
-                                                      frequency, amplitude, options.seed, job);
-        std::vector<double> control(octave.size());
-        interpolator.Solve(octave, 1, control, {.tolerance = 1e-9, .onIteration = [&](int, double) {
-                                                    job.CheckStopped();
-                                                }});
-        _values.resize(control.size(), 0.0);
-        for (size_t i = 0; i < control.size(); ++i) _values[i] += control[i];
-        if (level < levels) continue;
-        auto const limits = interpolator.FindLimits(_values, 1);
+        eval::Interpolator const interpolator(refiner, level);
+        auto const points =
+            options.at == NoiseAt::Limit ? interpolator.FindLimits(positions, 3) : positions;
+        auto const octave = MakeOctave(points, level, frequency, amplitude, options.seed, job);
+        auto const control = FitOctave(model, interpolator, level, octave, octaves, job);
+        octaves.control.resize(control.size(), 0.0);
+        for (size_t i = 0; i < control.size(); ++i) octaves.control[i] += control[i];
+        frequency *= 2.0;
+        amplitude *= options.gain;
+        if (level + 1 < options.octaves) continue;
+        auto const limits = interpolator.FindLimits(octaves.control, 1);
         auto const [low, high] = std::minmax_element(limits.begin(), limits.end());
-        _low = *low;
-        _high = *high;
+        octaves.low = *low;
+        octaves.high = *high;
     }
-    _cage = levels > 0 ? far_ext::MakeRefinedCage(*refiner, cage) : cage;
+    return octaves;
+}
+
+}  // namespace
+
+SurfaceNoise::SurfaceNoise(Model const& model, NoiseOptions const& options, Job& job) {
+    int const levels = CheckOptions(model, options);
+    auto const refiner = MakeUniformRefiner(model.GetCage(), model.GetPath(), levels);
+    Octaves octaves = AddUpOctaves(model, *refiner, options, job);
+    _values = std::move(octaves.control);
+    _low = octaves.low;
+    _high = octaves.high;
+    _singularLevels = std::move(octaves.singularLevels);
+    _cage = levels > 0 ? far_ext::MakeRefinedCage(*refiner, model.GetCage()) : model.GetCage();
     _cage.fvarChannels.clear();
     _faces = std::make_unique<eval::RefinedFaces>(eval::LimitSurface(model.GetRefiner()), levels);
     _refiner = far_ext::CreateRefiner(_cage);
     _surface = std::make_unique<eval::LimitSurface>(*_refiner);
+}
+
+VertexNoise FindVertexNoise(Model const& model, NoiseOptions const& options, int level, Job& job) {
+    int const octaveLevel = CheckOptions(model, options), last = std::max(level, octaveLevel);
+    auto const refiner = MakeUniformRefiner(model.GetCage(), model.GetPath(), last);
+    Octaves octaves = AddUpOctaves(model, *refiner, options, job);
+    for (int next = octaveLevel + 1; next <= last; ++next) {
+        job.CheckStopped();
+        octaves.control = eval::RefineValues<1>(*refiner, next, octaves.control);
+    }
+    VertexNoise noise{eval::Interpolator(*refiner, last).FindLimits(octaves.control, 1),
+                      octaves.low, octaves.high, std::move(octaves.singularLevels)};
+    // A vertex keeps its number, and its limit, on all levels to come.
+    noise.values.resize(static_cast<size_t>(refiner->GetLevel(level).GetNumVertices()));
+    return noise;
 }
 
 SurfaceNoise::Sampler::Sampler(SurfaceNoise const& noise)

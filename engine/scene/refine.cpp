@@ -10,6 +10,7 @@
 
 #include "engine/scene/scene_checks.h"
 #include "eval/differential/subdivide_values.h"
+#include "eval/fit/alpha_steps.h"
 #include "eval/surface/vertex_limits.h"
 #include "far_ext/error.h"
 #include "far_ext/topology/refined_cage.h"
@@ -19,28 +20,34 @@ namespace limn::engine {
 
 namespace {
 
-using Level = Far::TopologyLevel;
+using far_ext::SubdivisionRule;
 
 /// Refines values of length N through all levels: of vertices, or of a face-varying channel.
+///
+/// \param alpha  of vertices; none: the plain rule
 template <size_t N>
 std::vector<double> RefineToLast(Far::TopologyRefiner const& refiner, std::span<double const> base,
-                                 Job& job, int fvarChannel = -1) {
+                                 Job& job, int fvarChannel = -1,
+                                 eval::AlphaSteps const* alpha = nullptr) {
     std::vector<double> values(base.begin(), base.end());
     for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
         job.CheckStopped();
-        values = eval::RefineValues<N>(refiner, level, values, fvarChannel);
+        auto fine = eval::RefineValues<N>(refiner, level, values, fvarChannel);
+        if (alpha) alpha->Add(level - 1, values, static_cast<int>(N), fine);
+        values = std::move(fine);
     }
     return values;
 }
 
-Primvar RefinePrimvar(Far::TopologyRefiner const& refiner, Primvar const& primvar, Job& job) {
+Primvar RefinePrimvar(Far::TopologyRefiner const& refiner, Primvar const& primvar,
+                      eval::AlphaSteps const* alpha, Job& job) {
     Primvar fine{primvar.name, primvar.numChannels, {}};
     size_t const n = static_cast<size_t>(primvar.numChannels);
     for (size_t c = 0; c < n; ++c) {
         std::vector<double> channel;
         for (size_t i = c; i < primvar.values.size(); i += n)
             channel.push_back(static_cast<double>(primvar.values[i]));
-        auto const refined = RefineToLast<1>(refiner, channel, job);
+        auto const refined = RefineToLast<1>(refiner, channel, job, -1, alpha);
         fine.values.resize(refined.size() * n);
         for (size_t i = 0; i < refined.size(); ++i)
             fine.values[i * n + c] = static_cast<float>(refined[i]);
@@ -65,6 +72,16 @@ std::string ListVertices(std::vector<Index> const& vertices) {
     if (listed.size() < vertices.size())
         list += fmt::format(" and {} more", vertices.size() - listed.size());
     return list;
+}
+
+/// None where alpha is 0.
+std::unique_ptr<eval::AlphaSteps> MakeAlphaSteps(Far::TopologyRefiner const& refiner,
+                                                 RefineOptions const& options) {
+    if (options.alpha == 0.0) return nullptr;
+    if (options.rule.rule != SubdivisionRule::Scheme)
+        throw Error(ErrorCode::BadOption, "alpha is a parameter of the catmark rule alone");
+    int const lastLevel = options.toLimit ? options.levels : options.levels - 1;
+    return std::make_unique<eval::AlphaSteps>(refiner, lastLevel, options.alpha);
 }
 
 /// Refined vertices at their limit. Vertices without a face that has one stay.
@@ -130,7 +147,8 @@ void InheritFromFaces(Model const& model, std::vector<Index> const& baseFaces, S
     }
 }
 
-Scene RefineAllButPositions(Model const& model, Far::TopologyRefiner const& refiner, Job& job) {
+Scene RefineAllButPositions(Model const& model, Far::TopologyRefiner const& refiner, Job& job,
+                            eval::AlphaSteps const* alpha) {
     job.Start("refining attributes");
     Scene fine;
     fine.path = model.GetPath();
@@ -138,7 +156,7 @@ Scene RefineAllButPositions(Model const& model, Far::TopologyRefiner const& refi
     fine.cage = far_ext::MakeRefinedCage(refiner, model.GetCage());
     if (model.HasUVs()) fine.uvs = RefineToLast<2>(refiner, model.GetUVs(), job, 0);
     for (Primvar const& primvar : model.GetPrimvars())
-        fine.primvars.push_back(RefinePrimvar(refiner, primvar, job));
+        fine.primvars.push_back(RefinePrimvar(refiner, primvar, alpha, job));
     InheritFromFaces(model, far_ext::FindBaseFaces(refiner, refiner.GetMaxLevel()), fine);
     return fine;
 }
@@ -148,14 +166,21 @@ Scene RefineUniformly(Model const& model, RefineOptions const& options, Job& job
     WarnOfRoughVertices(model, options.rule, job);
     job.Start("refining topology");
     auto const refiner = MakeUniformRefiner(model.GetCage(), model.GetPath(), options.levels);
-    Scene fine = RefineAllButPositions(model, *refiner, job);
+    auto const alpha = MakeAlphaSteps(*refiner, options);
+    Scene fine = RefineAllButPositions(model, *refiner, job, alpha.get());
     job.Start("refining positions");
     fine.positions = model.GetPositions();
     for (int level = 1; level <= options.levels; ++level) {
         job.CheckStopped();
-        fine.positions = eval::SubdivideValues<3>(*refiner, level, options.rule, fine.positions);
+        auto children = eval::SubdivideValues<3>(*refiner, level, options.rule, fine.positions);
+        if (alpha) alpha->Add(level - 1, fine.positions, 3, children);
+        fine.positions = std::move(children);
     }
-    if (options.toLimit && !options.rule.IsInterpolating()) fine.positions = MoveToLimit(fine, job);
+    if (!options.toLimit) return fine;
+    if (alpha)
+        fine.positions = alpha->FindLimits(fine.positions, 3);
+    else if (!options.rule.IsInterpolating())
+        fine.positions = MoveToLimit(fine, job);
     return fine;
 }
 

@@ -10,6 +10,10 @@
 #include "engine/scene/model.h"
 #include "far_ext/differential/subdivision_rows.h"
 
+namespace limn::eval {
+class AlphaSteps;
+}
+
 namespace limn::engine {
 
 struct RefineOptions {
@@ -18,6 +22,9 @@ struct RefineOptions {
     /// Of the positions. Both Butterflies need the Loop scheme, Kobbelt quads and the Catmull-Clark
     /// scheme; vertices of all but the scheme's own rule are in the limit already.
     far_ext::TunedRule rule{};
+    /// Of positions and primvars by the scheme's rule: generalised Catmull-Clark in every step, 0
+    /// (plain) to 1. Source [LaiCheng11] Appendix A; [Limit 4]
+    double alpha = 0.0;
 };
 
 /// Refines a mesh uniformly by OpenSubdiv's rules, in double.
@@ -26,7 +33,8 @@ struct RefineOptions {
 /// holes and groups of the parents.
 ///
 /// \param job     told of vertices at which the rule is not smooth
-/// \throws Error  BadOption; TooLarge where the refined mesh would pass 2^31 indices; as
+/// \throws Error  BadOption, also for an alpha outside [0, 1], or with another scheme or rule than
+///                Catmull-Clark's; TooLarge where the refined mesh would pass 2^31 indices; as
 ///                far_ext::BuildSubdivisionRows
 /// \throws Stopped
 Scene RefineUniformly(Model const& model, RefineOptions const& options, Job& job);
@@ -44,7 +52,10 @@ std::unique_ptr<Far::TopologyRefiner> MakeUniformRefiner(far_ext::ControlMesh co
 void WarnOfRoughVertices(Model const& model, far_ext::TunedRule const& rule, Job& job);
 
 /// All of RefineUniformly's result but the positions.
-Scene RefineAllButPositions(Model const& model, Far::TopologyRefiner const& refiner, Job& job);
+///
+/// \param alpha  of primvars; none: the plain rule
+Scene RefineAllButPositions(Model const& model, Far::TopologyRefiner const& refiner, Job& job,
+                            eval::AlphaSteps const* alpha = nullptr);
 
 /// Gives refined faces the groups of the base faces they lie in, and leaves those without texture
 /// coordinates whose base face has none.

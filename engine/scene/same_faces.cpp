@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/scene/same_faces.h"
 
+#include <string>
+
+#include <fmt/format.h>
+
+#include "far_ext/error.h"
+
 namespace limn::engine {
 
 using far_ext::ControlMesh;
@@ -26,6 +32,32 @@ std::optional<FaceDifference> FindFaceDifference(ControlMesh const& a, ControlMe
         }
     }
     return std::nullopt;
+}
+
+namespace {
+
+std::string DescribeDifference(Model const& a, Model const& b, FaceDifference const& difference) {
+    switch (difference.kind) {
+        case FaceDifference::Kind::NumVertices:
+            return fmt::format("{} and {} vertices", difference.a, difference.b);
+        case FaceDifference::Kind::NumFaces:
+            return fmt::format("{} and {} faces", difference.a, difference.b);
+        default:
+            return fmt::format("{} has other vertices than {}", a.NameFace(difference.face),
+                               b.NameFace(difference.face));
+    }
+}
+
+}  // namespace
+
+void RequireSameFaces(Model const& a, Model const& b, std::string_view purpose) {
+    auto const difference = FindFaceDifference(a.GetCage(), b.GetCage());
+    if (!difference) return;
+    throw Error(
+        ErrorCode::BadMesh,
+        fmt::format("{} and {} do not have the same faces: {}; {} needs the same vertices "
+                    "and faces in the same order",
+                    a.GetPath(), b.GetPath(), DescribeDifference(a, b, *difference), purpose));
 }
 
 }  // namespace limn::engine

@@ -2,8 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
-#include "far_ext/topology/control_mesh.h"
+#include "engine/scene/model.h"
 
 namespace limn::engine {
 
@@ -23,5 +24,9 @@ struct FaceDifference {
 /// Nothing where both have the same number of vertices, and HaveSameFaces.
 std::optional<FaceDifference> FindFaceDifference(far_ext::ControlMesh const& a,
                                                  far_ext::ControlMesh const& b);
+
+/// \param purpose  what needs the same faces, for the message: "a morph"
+/// \throws Error   BadMesh, naming the first difference
+void RequireSameFaces(Model const& a, Model const& b, std::string_view purpose);
 
 }  // namespace limn::engine

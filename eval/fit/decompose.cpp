@@ -20,6 +20,24 @@ void ApplyHighPass(LimitOperator const& A, int length, int power, std::vector<do
     }
 }
 
+void WeighBands(LimitOperator const& A, int length, BandGains const& gains, std::vector<double>& x,
+                std::function<void(int, std::span<double const>)> const& visit) {
+    std::vector<double> rest = x, band(x.size());
+    std::fill(x.begin(), x.end(), 0.0);
+    auto const add = [&](double gain, std::vector<double> const& part) {
+        for (size_t k = 0; k < x.size(); ++k) x[k] += gain * part[k];
+    };
+    for (int i = 0; i < gains.GetEnd(); ++i) {
+        A.Apply(rest, length, band);
+        if (visit) visit(i, band);
+        if (i >= gains.first) add(gains.gains[i - gains.first], band);
+        for (size_t k = 0; k < rest.size(); ++k) rest[k] -= band[k];
+    }
+    if (!gains.remainder) return;
+    if (visit) visit(gains.GetEnd(), rest);
+    add(*gains.remainder, rest);
+}
+
 void Denoise(LimitOperator const& A, int length, int detail, int steps, std::vector<double>& x) {
     std::vector<double> high;
     for (int step = 0; step < steps; ++step) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,23 @@ namespace limn::eval {
 /// \param visit  called with i and (E-A)^i x for i = 0 to power; may be empty
 void ApplyHighPass(LimitOperator const& A, int length, int power, std::vector<double>& x,
                    std::function<void(int, std::span<double const>)> const& visit = {});
+
+/// Bands that follow each other, each with a gain, and what lies beyond them.
+struct BandGains {
+    int first = 0;                          ///< band of the first gain
+    std::vector<double> gains;              ///< of bands first, first + 1, ...
+    std::optional<double> remainder = 1.0;  ///< of (E-A)^GetEnd(); none: that is left out
+
+    /// The band after the last.
+    int GetEnd() const { return first + static_cast<int>(gains.size()); }
+};
+
+/// x <- sum over k of gains[k] (E-A)^(first+k) A x, + remainder (E-A)^end x.
+///
+/// \param visit  called with i and band i from 0 on, before it is weighed, and with the end and the
+///               remainder where that is taken; may be empty
+void WeighBands(LimitOperator const& A, int length, BandGains const& gains, std::vector<double>& x,
+                std::function<void(int, std::span<double const>)> const& visit = {});
 
 /// x <- (E - (E-A)^(detail+1)) x, `steps` times: keeps the bands 0 to detail.
 void Denoise(LimitOperator const& A, int length, int detail, int steps, std::vector<double>& x);

@@ -39,6 +39,7 @@ struct Row {
 
 Words const kBands{"--maps", "bands"}, kNoise{"--maps", "noise"};
 Words const kDisplacement{"--maps", "displacement", "--against", "MOVED"};
+Words const kFrom{"--maps", "bands", "--from", "MOVED", "--bands", "1-"};
 Words const kField{"--maps", "field", "--field", "FIELD"};
 
 /// The words MOVED, FIELD, ... stand for files of the test.
@@ -62,6 +63,11 @@ std::vector<Row> const kRows{
      "plain",
      Effect::None},  // of a mesh round the origin
     {"--bands", kBands + Words{"--bands", "2"}, kBands},
+    {"--gain", kBands + Words{"--gain", "1,1,1,2"}, kBands},
+    {"--gain", kBands + Words{"--gain", "1,1,1,2,1"}, kBands + Words{"--gain", "1,1,1,2,2"}},
+    {"--from", kFrom, kBands},
+    {"--bands", kFrom, {"--maps", "bands", "--from", "MOVED", "--bands", "1-2"}},
+    {"--carry", kFrom + Words{"--carry", "object"}, kFrom},
     {"--vector", kBands + Words{"--vector"}, kBands},
     {"--vector", kDisplacement + Words{"--vector"}, kDisplacement},
     {"--space", kDisplacement + Words{"--vector", "--space", "tangent"},
@@ -74,6 +80,7 @@ std::vector<Row> const kRows{
     {"--noise-frequency", kNoise + Words{"--noise-frequency", "3"}, kNoise},
     {"--noise-gain", kNoise + Words{"--noise-gain", "0.9"}, kNoise},
     {"--noise-seed", kNoise + Words{"--noise-seed", "7"}, kNoise},
+    {"--noise-at", kNoise + Words{"--noise-at", "vertex"}, kNoise},
     {"--noise-ramp", kNoise + Words{"--noise-ramp", "#000000,#ff8000"}, kNoise},
     {"--groups", {"--groups", "red"}},
     {"--scheme", {"--scheme", "bilinear", "--maps", "position"}, {"--maps", "position"}},
@@ -148,8 +155,17 @@ std::vector<MapRow> const kMapRows{
 std::vector<MapRow> const kTangentRows{
     {"normal"},
     {"displacement", {{"--against", "MOVED"}, {"--vector"}, {"--space", "tangent"}}},
-    {"bands", {{"--vector"}, {"--space", "tangent"}}},
-    {"noise", {{"--normalize"}, {"--noise-frequency", "3"}, {"--noise-gain", "0.9"}}}};
+    {"bands",
+     {{"--from", "MOVED"},
+      {"--bands", "1-"},
+      {"--carry", "object"},
+      {"--vector"},
+      {"--space", "tangent"}}},
+    {"noise",
+     {{"--normalize"},
+      {"--noise-frequency", "3"},
+      {"--noise-gain", "0.9"},
+      {"--noise-at", "vertex"}}}};
 
 Words List(Flags const& flags) {
     Words words;

@@ -118,6 +118,39 @@ TEST_F(CliFit, AlphaWritesTheFinerMeshUnlessTold) {
     EXPECT_EQ(engine::ReadMesh(folder / "b.obj").cage.numVertices, 8);
 }
 
+// The control mesh of the scheme with alpha in every step, which refine subdivides by.
+TEST_F(CliFit, StationaryAlphaIsRefinedByRefine) {
+    std::string const mesh = MakePerturbedCube(), fit = folder / "a.obj";
+    Outcome const outcome =
+        Limn({"fit", mesh, "-o", fit, "--alpha", "0.5", "--alpha-rule", "stationary", "--precision",
+              "double", "--report", folder / "r.json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(Contains(outcome.err, "as limn refine --alpha does and no other program"));
+    EXPECT_LE(Report()["certificate"]["max"], 1.01e-6);
+    auto const refine = [&](Words const& more) {
+        EXPECT_EQ(Limn(Words{"refine", fit, "-o", folder / "b.obj", "--levels", "2", "--limit",
+                             "--precision", "double"} +
+                       more)
+                      .status,
+                  0);
+        auto limits = engine::ReadMesh(folder / "b.obj").positions;
+        limits.resize(24);
+        return test::LargestDifference(limits, engine::ReadMesh(mesh).positions);
+    };
+    EXPECT_LT(refine({"--alpha", "0.5"}), 1e-5);
+    EXPECT_GT(refine({}), 1e-2);
+}
+
+TEST_F(CliFit, FiltersTakeTheRuleOfAlpha) {
+    auto const filter = [&](Words const& more) {
+        EXPECT_EQ(Limn(Words{"denoise", cube, "-o", folder / "a.obj"} + more).status, 0);
+        return test::ReadText(folder / "a.obj");
+    };
+    Words const alpha{"--alpha", "0.5"};
+    EXPECT_EQ(filter(alpha), filter(alpha + Words{"--alpha-rule", "first"}));
+    EXPECT_NE(filter(alpha), filter(alpha + Words{"--alpha-rule", "stationary"}));
+}
+
 TEST_F(CliFit, AtLevelFitsTheRefinedPoints) {
     ASSERT_EQ(Limn({"fit", Shape("catmark_cubes_semisharp"), "-o", folder / "a.obj", "--at-level",
                     "2", "--report", folder / "r.json", "--quiet"})
@@ -161,6 +194,13 @@ TEST_F(CliFit, UsageErrorsAreStatus2) {
     refuse("fit", "a.obj", {"--alpha", "2"}, "--alpha");
     refuse("fit", "a.obj", {"--alpha", "0.5", "--scheme", "loop"}, "of the catmark scheme");
     refuse("fit", "a.obj", {"--keep-topology"}, "--keep-topology: without --alpha");
+    refuse("fit", "a.obj", {"--alpha-rule", "stationary"}, "--alpha");
+    refuse("fit", "a.obj", {"--alpha", "1", "--alpha-rule", "stationary", "--keep-topology"},
+           "--keep-topology: with --alpha-rule stationary");
+    refuse("denoise", "a.obj", {"--alpha-rule", "first"}, "--alpha");
+    refuse("refine", "a.obj", {"--alpha", "0.5", "--space", "differential"},
+           "--alpha is of --space spatial");
+    refuse("refine", "a.obj", {"--alpha", "0.5", "--scheme", "loop"}, "alpha");
     refuse("bands", "a", {"--count", "0"}, "--count");
     refuse("sharpen", "a.obj", {"--from-band", "4", "--to-band", "3"}, "is above --to-band");
     refuse("sharpen", "a.obj", {"--from-band", "0"}, "--from-band");

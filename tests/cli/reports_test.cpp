@@ -30,6 +30,7 @@ std::map<std::string, Words> MakeRuns(std::string const& mesh, std::string const
             {"refine", {"refine", mesh, "-o", out(".obj")}},
             {"fit", {"fit", mesh, "-o", out(".obj")}},
             {"bands", {"bands", mesh, "-o", out(""), "--count", "2"}},
+            {"combine", {"combine", mesh, "-o", out(".obj"), "--add", mesh + ":0.5"}},
             {"denoise", {"denoise", mesh, "-o", out(".obj")}},
             {"sharpen", {"sharpen", mesh, "-o", out(".obj")}},
             {"morph", {"morph", mesh, mesh, "-o", out(""), "--steps", "2"}},

@@ -43,6 +43,7 @@ protected:
                 {"measure", mesh},
                 {"fit", mesh, "-o", folder / "b.obj"},
                 {"bands", mesh, "-o", folder / "c", "--count", "2"},
+                {"combine", mesh, "-o", folder / "i.obj"},
                 {"denoise", mesh, "-o", folder / "d.obj"},
                 {"sharpen", mesh, "-o", folder / "e.obj"},
                 {"morph", mesh, mesh, "-o", folder / "f", "--steps", "1"},

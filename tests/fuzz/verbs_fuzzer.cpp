@@ -187,22 +187,22 @@ void Fit(Model const& model, Choices& choices, Job& job) {
 }
 
 void Filter(Model const& model, Choices& choices, Job& job) {
-    double const alpha = choices.Pick({0.0, 0.0, 0.5, 1.0});
+    far_ext::LimitOptions const rule{.alpha = choices.Pick({0.0, 0.0, 0.5, 1.0})};
     int const kind = choices.TakeInt(0, 2);
     if (kind == 0) {
-        engine::DenoiseOptions const options{choices.TakeInt(0, 4), choices.TakeInt(1, 3), alpha};
+        engine::DenoiseOptions const options{choices.TakeInt(0, 4), choices.TakeInt(1, 3), rule};
         RequirePositions(model, engine::Denoise(model, options, job));
         return;
     }
     if (kind == 1) {
         int const first = choices.TakeInt(1, 4);
         engine::SharpenOptions const options{first, choices.TakeInt(first, 6),
-                                             choices.TakeInt(1, 2), alpha};
+                                             choices.TakeInt(1, 2), rule};
         RequirePositions(model, engine::Sharpen(model, options, job));
         return;
     }
     int const count = choices.TakeInt(1, 6);
-    auto const bands = engine::SplitIntoBands(model, count, alpha, job);
+    auto const bands = engine::SplitIntoBands(model, count, rule, job);
     Require(bands.bands.size() == static_cast<size_t>(count), "there are as many bands as asked");
     std::vector<double> sum = bands.remainder;
     double largest = 0.0;
@@ -222,8 +222,8 @@ void Filter(Model const& model, Choices& choices, Job& job) {
 void MorphTo(Model const& model, Choices& choices, Job& job) {
     std::vector<double> positions = model.GetPositions();
     for (double& coordinate : positions) coordinate *= choices.Pick({1.0, 2.0, -1.0, 0.5});
-    engine::MorphOptions const options{.detail = choices.TakeInt(0, 3),
-                                       .rate = choices.TakeShare()};
+    engine::MorphStep const step{choices.TakeInt(0, 3), choices.TakeShare()};
+    engine::MorphOptions const options{.steps = std::vector<engine::MorphStep>(3, step)};
     engine::Morph morph(model, model.WithPoints(std::move(positions)), options);
     for (int frame = 0; frame < 3; ++frame) RequirePositions(model, morph.MakeNext(job));
 }

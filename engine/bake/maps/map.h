@@ -149,6 +149,9 @@ public:
 
     virtual std::unique_ptr<MapSampler> MakeSampler() const = 0;
 
+    /// Levels of refinement on which what is interpolated had to be changed to have a solution.
+    virtual std::vector<int> GetSingularLevels() const { return {}; }
+
 private:
     MapTraits _traits;
 };

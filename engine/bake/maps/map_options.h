@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/fit/band_sum.h"
 #include "engine/images/colour_ramp.h"
 #include "engine/noise/surface_noise.h"
 #include "engine/scene/model.h"
@@ -34,8 +35,9 @@ struct MapOptions {
     std::optional<std::vector<double>> field;  ///< of the map field: a 1-form on the mesh's edges
     NoiseOptions noise;                        ///< of the map noise
     std::optional<ColourRamp> noiseRamp;       ///< noise as colours
-    int bands = 4;          ///< of the map bands: how many, the smooth base included
-    bool isVector = false;  ///< displacement and bands as vectors
+    int bands = 4;  ///< of the map bands: how many, the smooth base included
+    std::optional<BandSumOptions> bandSum;  ///< of the map bands: one layer, the way to this sum
+    bool isVector = false;                  ///< displacement and bands as vectors
     VectorSpace space = VectorSpace::Object;
     bool isNormalized = false;  ///< noise from 0 to 1, a field of length 1
     std::optional<Encoding> encoding;

@@ -2,11 +2,12 @@
 //
 // Noise made on the surface (SurfaceNoise), as it is, as a share of its range, or through a ramp.
 
-#include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 
 #include "engine/bake/maps/map_table.h"
+#include "engine/noise/noise_scale.h"
 
 namespace limn::engine {
 
@@ -25,14 +26,16 @@ public:
         return std::make_unique<Sampler>(*this);
     }
 
+    std::vector<int> GetSingularLevels() const override {
+        return _noise ? _noise->GetSingularLevels() : std::vector<int>();
+    }
+
 private:
     class Sampler : public MapSampler {
     public:
         explicit Sampler(NoiseMap const& map)
-            : _ramp(map._options.noiseRamp ? &*map._options.noiseRamp : nullptr),
-              _isNormalized(map._options.isNormalized),
-              _low(map._noise->GetLow()),
-              _range(map._noise->GetHigh() - _low),
+            : _scale(map._noise->GetLow(), map._noise->GetHigh(), map._options.isNormalized,
+                     map._options.noiseRamp),
               _noise(*map._noise) {}
 
         void Start(FaceSamples const& samples) override {
@@ -41,25 +44,17 @@ private:
         }
 
         void Evaluate(SampleBlock const& block, float* out, size_t outStride) override {
+            std::array<double, 3> channels{};
+            size_t const numChannels = static_cast<size_t>(_scale.GetNumChannels());
             for (size_t i = 0; i < block.GetCount(); ++i) {
-                double const value = _values[block.samples[i]];
-                double const share =
-                    _range > 0.0 ? std::clamp((value - _low) / _range, 0.0, 1.0) : 0.5;
-                if (!_ramp) {
-                    out[i] = static_cast<float>(_isNormalized ? share : value);
-                    continue;
-                }
-                auto const colour = _ramp->Evaluate(share);
-                for (size_t c = 0; c < 3; ++c) {
-                    out[c * outStride + i] = static_cast<float>(colour[c]);
-                }
+                _scale.Convert(_values[block.samples[i]], channels);
+                for (size_t c = 0; c < numChannels; ++c)
+                    out[c * outStride + i] = static_cast<float>(channels[c]);
             }
         }
 
     private:
-        ColourRamp const* _ramp;
-        bool _isNormalized;
-        double _low, _range;  // over the whole surface
+        NoiseScale _scale;
         SurfaceNoise::Sampler _noise;
         std::vector<double> _values;  // per sample of the face
     };
@@ -88,6 +83,8 @@ std::unique_ptr<Map> MakeNoiseMap(std::string const& name, MapOptions const& opt
                                     options.noise.octaves, options.noise.frequency.value_or(0.0),
                                     options.noise.gain, options.noise.seed, isShare,
                                     options.noiseRamp ? options.noiseRamp->GetText() : "none");
+    if (options.noise.at != NoiseAt::Limit)
+        traits.optionText += fmt::format(" at={}", kNoiseAtWords.GetWord(options.noise.at));
     return std::make_unique<NoiseMap>(std::move(traits), options);
 }
 

@@ -160,7 +160,7 @@ TEST(Bake, BandsAddUpToTheWayFromTheSmoothBase) {
     engine::Scene const spot = test::LoadSpot();
     engine::Scene base = spot;
     engine::Job job;
-    base.positions = engine::SplitIntoBands(engine::Model::Build(spot), 3, 0.0, job).bands[0];
+    base.positions = engine::SplitIntoBands(engine::Model::Build(spot), 3, {}, job).bands[0];
     for (bool const isVector : {false, true}) {
         auto bands = MakeOptions(folder / "bands.exr", {"bands"}, 64);
         bands.bands = 3;

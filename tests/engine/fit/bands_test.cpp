@@ -22,7 +22,7 @@ using test::ToRows;
 
 engine::Bands Split(engine::Scene const& scene, int count) {
     engine::Job job;
-    return engine::SplitIntoBands(engine::Model::Build(scene), count, 0.0, job);
+    return engine::SplitIntoBands(engine::Model::Build(scene), count, {}, job);
 }
 
 TEST(Bands, AddUpToTheMesh) {
@@ -108,7 +108,7 @@ TEST(Bands, SharpeningThatOutgrowsTheMeshIsWarnedOfOnce) {
 TEST(Bands, FiltersStopWhereTheirHostWants) {
     auto const model = engine::Model::Build(test::MakeTorus(9, 7));
     using engine::Job;
-    EXPECT_TRUE(test::StopsHalfway([&](Job& job) { engine::SplitIntoBands(model, 9, 0.0, job); }));
+    EXPECT_TRUE(test::StopsHalfway([&](Job& job) { engine::SplitIntoBands(model, 9, {}, job); }));
     EXPECT_TRUE(test::StopsHalfway([&](Job& job) { engine::Denoise(model, {.steps = 4}, job); }));
     EXPECT_TRUE(test::StopsHalfway([&](Job& job) { engine::Sharpen(model, {.steps = 4}, job); }));
 }

@@ -7,6 +7,7 @@
 
 #include "engine/io/mesh_reader.h"
 #include "engine/io/mesh_writer.h"
+#include "engine/scene/refine.h"
 #include "eval/surface/vertex_limits.h"
 #include "far_ext/topology/refiner.h"
 #include "support/files.h"
@@ -181,14 +182,42 @@ TEST(Fit, AlphaGivesAFinerMeshWhoseLimitPassesThroughTheVertices) {
     EXPECT_LE(kept.certificate.max, 1.1e-10);
 }
 
+// With alpha in all steps the result has the data's faces, and the limit of that scheme passes
+// through the data; that of plain Catmull-Clark does not.
+TEST(Fit, StationaryAlphaGivesTheControlMeshOfItsScheme) {
+    engine::Job job;
+    engine::FitOptions const options{.tolerance = 1e-10,
+                                     .alpha = 0.5,
+                                     .alphaRule = far_ext::LimitOptions::AlphaRule::Stationary};
+    engine::Scene cube = test::MakeCube();
+    cube.positions[0] += 0.1;
+    for (engine::Scene const& data : {cube, test::MakePrism(6), test::MakeGridWithHole(5, 5),
+                                      test::LoadShape("catmark_cubes_semisharp")}) {
+        auto const result = FitToLimit(data, options);
+        EXPECT_TRUE(result.HasConverged());
+        EXPECT_LE(result.certificate.max, 1.01e-10);
+        ASSERT_EQ(result.mesh.positions.size(), data.positions.size());
+        EXPECT_GT(FindMiss(result.mesh, data.positions), 1e-4);
+        auto const fine = engine::RefineUniformly(
+            engine::Model::Build(result.mesh), {.levels = 3, .toLimit = true, .alpha = 0.5}, job);
+        double miss = 0.0;
+        for (size_t i = 0; i < data.positions.size(); ++i)
+            miss = test::Worse(miss, std::abs(fine.positions[i] - data.positions[i]));
+        EXPECT_LT(miss, 1e-9 * test::BoxDiagonal(data.positions));
+    }
+}
+
 // Without a rule for boundaries only vertices round faces with a limit have one; alpha moves the
 // others, too, and where to is nobody's business.
 TEST(Fit, WhatHasNoLimitIsNoMissOfACertificate) {
     engine::Scene scene = test::MakeGridWithHole(7, 6);
     scene.cage.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_NONE);
-    auto const result = FitToLimit(scene, {.tolerance = 1e-9, .alpha = 0.5});
-    EXPECT_TRUE(result.report.converged);
-    EXPECT_LE(result.certificate.max, 1.01e-9);
+    using Rule = far_ext::LimitOptions::AlphaRule;
+    for (Rule rule : {Rule::FirstStep, Rule::Stationary}) {
+        auto const result = FitToLimit(scene, {.tolerance = 1e-9, .alpha = 0.5, .alphaRule = rule});
+        EXPECT_TRUE(result.report.converged);
+        EXPECT_LE(result.certificate.max, 1.01e-9);
+    }
 }
 
 TEST(Fit, PrimvarsAreFittedToo) {

@@ -142,6 +142,89 @@ TEST_P(OneOctaveOf, PassesThroughTheNoise) {
     }
 }
 
+// A vertex of any level is a corner of faces of the cage, or of faces refined from it; those of the
+// base level can be asked of the sampler. Levels coarser and finer than the last octave's.
+TEST_P(SurfaceNoiseOf, VerticesHaveTheNoiseOfTheirPlace) {
+    engine::Scene const scene = test::LoadShape(GetParam());
+    auto const model = engine::Model::Build(scene);
+    eval::LimitSurface const surface(model.GetRefiner());
+    auto const& level = model.GetLevel();
+    engine::Job job;
+    for (engine::NoiseAt at : {engine::NoiseAt::Limit, engine::NoiseAt::Vertex}) {
+        engine::NoiseOptions const options{.octaves = 3, .seed = 3, .at = at};
+        engine::SurfaceNoise const noise(model, options, job);
+        engine::SurfaceNoise::Sampler sampler(noise);
+        for (int refined : {0, 1, 2, 4}) {
+            auto const atVertices = engine::FindVertexNoise(model, options, refined, job);
+            EXPECT_EQ(atVertices.low, noise.GetLow());
+            EXPECT_EQ(atVertices.high, noise.GetHigh());
+            for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
+                EXPECT_NEAR(atVertices.values[vertex],
+                            AtCorner(sampler, surface, level.GetVertexFaces(vertex)[0],
+                                     level.GetVertexFaceLocalIndices(vertex)[0]),
+                            1e-7);
+            }
+        }
+    }
+}
+
+// The paper takes an octave's noise at the vertices of its level.
+TEST_P(OneOctaveOf, AtVerticesIsThatOfTheVertices) {
+    engine::Scene const scene = test::LoadShape(GetParam());
+    auto const model = engine::Model::Build(scene);
+    engine::Job job;
+    auto const noise = engine::FindVertexNoise(
+        model, {.octaves = 1, .frequency = 1.3, .seed = 9, .at = engine::NoiseAt::Vertex}, 0, job);
+    for (size_t i = 0; i < noise.values.size(); ++i) {
+        double const* const x = &scene.positions[3 * i];
+        EXPECT_NEAR(noise.values[i], GradientNoise(9, 1.3 * x[0], 1.3 * x[1], 1.3 * x[2]), 1e-7);
+    }
+    EXPECT_TRUE(noise.singularLevels.empty());
+}
+
+// On a cube A has no inverse: k, +1 and -1 in turn, is what no control values reach. The noise
+// passes through N - k (k.N)/(k.k) instead, with a warning.
+TEST(SurfaceNoise, OnSingularMeshesIsFreedOfWhatAlternates) {
+    engine::Scene cube = test::MakeCube();
+    for (size_t i = 0; i < cube.positions.size(); ++i)
+        cube.positions[i] += 0.1 * std::sin(static_cast<double>(7 * i));
+    auto const model = engine::Model::Build(cube);
+    test::Listener listener;
+    engine::Job job(listener.MakeHost());
+    auto const noise = engine::FindVertexNoise(
+        model, {.octaves = 1, .frequency = 1.3, .seed = 9, .at = engine::NoiseAt::Vertex}, 0, job);
+    EXPECT_EQ(noise.singularLevels, std::vector<int>{0});
+    ASSERT_EQ(listener.warnings.size(), 1u);
+    std::vector<double> signs(8, 0.0), N;
+    signs[0] = 1.0;
+    for (int sweep = 0; sweep < 3; ++sweep) {
+        for (Index edge = 0; edge < model.GetLevel().GetNumEdges(); ++edge) {
+            auto const ends = model.GetLevel().GetEdgeVertices(edge);
+            for (int i : {0, 1}) {
+                if (signs[ends[i]] == 0.0) signs[ends[i]] = -signs[ends[1 - i]];
+            }
+        }
+    }
+    double alternating = 0.0;
+    for (size_t i = 0; i < 8; ++i) {
+        double const* const x = &cube.positions[3 * i];
+        N.push_back(GradientNoise(9, 1.3 * x[0], 1.3 * x[1], 1.3 * x[2]));
+        alternating += signs[i] * N[i] / 8.0;
+    }
+    EXPECT_GT(std::abs(alternating), 1e-3);  // else nothing is shown
+    for (size_t i = 0; i < 8; ++i)
+        EXPECT_NEAR(noise.values[i], N[i] - signs[i] * alternating, 1e-8);
+}
+
+TEST(SurfaceNoise, IsSingularOnTheFirstLevelOnly) {
+    engine::Job job;
+    auto const cube = engine::Model::Build(test::MakeCube());
+    EXPECT_EQ(engine::SurfaceNoise(cube, {.octaves = 3}, job).GetSingularLevels(),
+              std::vector<int>{0});
+    auto const torus = engine::Model::Build(test::MakeTorus(9, 7));
+    EXPECT_TRUE(engine::SurfaceNoise(torus, {.octaves = 3}, job).GetSingularLevels().empty());
+}
+
 TEST(SurfaceNoise, WhatIsNoFrequencyOrNumberOfOctavesIsRefused) {
     auto const model = engine::Model::Build(test::MakeCube());
     engine::Job job;

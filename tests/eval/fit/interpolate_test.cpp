@@ -126,6 +126,10 @@ TEST(Spectrum, HasTheKnownSmallestEigenvalues) {
     EXPECT_NEAR(SmallestEigenvalue(test::MakeCube()), 0.0, 1e-14);
     EXPECT_NEAR(SmallestEigenvalue(test::MakePrism(6)), 0.0, 1e-14);
     EXPECT_NEAR(SmallestEigenvalue(test::MakeCube(), {.alpha = 0.5}), 0.125, 1e-12);
+    EXPECT_NEAR(SmallestEigenvalue(
+                    test::MakeCube(),
+                    {.alpha = 0.5, .alphaRule = far_ext::LimitOptions::AlphaRule::Stationary}),
+                0.1515, 1e-4);
     EXPECT_NEAR(SmallestEigenvalue(test::MakeTorus(12, 8), {.alpha = 0.5}), 2.0 / 9.0, 1e-12);
     EXPECT_NEAR(SmallestEigenvalue(test::MakeBipyramid(12)), 0.1545, 1e-4);
     EXPECT_NEAR(SmallestEigenvalue(test::MakeTriangleTorus(12, 12)), 0.25, 1e-12);

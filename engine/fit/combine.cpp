@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/fit/combine.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/scene/same_faces.h"
+#include "far_ext/rows/points.h"
+
+namespace limn::engine {
+
+namespace {
+
+void Add(double weight, std::vector<double> const& from, std::vector<double>& to) {
+    for (size_t i = 0; i < to.size(); ++i) to[i] += weight * from[i];
+}
+
+Primvar const* FindScalar(Model const& model, std::string const& name) {
+    auto const& primvars = model.GetPrimvars();
+    auto const found = std::ranges::find(primvars, name, &Primvar::name);
+    return found == primvars.end() || found->numChannels != 1 ? nullptr : &*found;
+}
+
+/// Adds up a primvar that is a scalar of all meshes; others stay.
+void CombineScalar(CombineOptions const& options, Primvar& primvar) {
+    if (primvar.numChannels != 1) return;
+    std::vector<double> sum(primvar.values.begin(), primvar.values.end());
+    for (double& value : sum) value *= options.scale;
+    for (WeightedMesh const& added : options.added) {
+        Primvar const* const other = FindScalar(added.mesh, primvar.name);
+        if (!other) return;
+        Add(added.weight, {other->values.begin(), other->values.end()}, sum);
+    }
+    std::ranges::transform(sum, primvar.values.begin(),
+                           [](double x) { return static_cast<float>(x); });
+}
+
+/// R (B - A) for all offsets, weighed and added up. \return the largest turn
+double AddOffsets(Model const& model, CombineOptions const& options, std::vector<double>& sum,
+                  Job& job) {
+    if (options.offsets.empty()) return 0.0;
+    job.Start("building the limit matrix");
+    auto const A = eval::LimitOperator::Build(model.GetRefiner());
+    double largestTurn = 0.0;
+    for (auto const& [from, to, weight] : options.offsets) {
+        std::vector<double> offset = to.GetPositions();
+        Add(-1.0, from.GetPositions(), offset);
+        double const turn = CarryVectors(options.carry, A, model.GetLevel(), from.GetPositions(),
+                                         model.GetPositions(), offset, job);
+        largestTurn = std::max(largestTurn, turn);
+        Add(weight, offset, sum);
+    }
+    return largestTurn;
+}
+
+void MeasureOffset(Model const& model, Combination& result) {
+    far_ext::Points const before(model.GetPositions()), after(result.mesh.positions);
+    double squares = 0.0;
+    for (size_t i = 0; i < before.GetCount(); ++i) {
+        double const square = (after[i] - before[i]).squaredNorm();
+        squares += square;
+        result.maxOffset = std::max(result.maxOffset, std::sqrt(square));
+    }
+    double const count = std::max(1.0, static_cast<double>(before.GetCount()));
+    result.rmsOffset = std::sqrt(squares / count);
+}
+
+}  // namespace
+
+Combination Combine(Model const& model, CombineOptions const& options, Job& job) {
+    char const* const purpose = "a combination";
+    for (WeightedMesh const& added : options.added) RequireSameFaces(model, added.mesh, purpose);
+    for (WeightedOffset const& offset : options.offsets) {
+        RequireSameFaces(model, offset.from, purpose);
+        RequireSameFaces(model, offset.to, purpose);
+    }
+    Combination result;
+    result.mesh = model.MakeScene();
+    std::vector<double>& sum = result.mesh.positions;
+    for (double& coordinate : sum) coordinate *= options.scale;
+    for (WeightedMesh const& added : options.added)
+        Add(added.weight, added.mesh.GetPositions(), sum);
+    if (!options.added.empty()) {
+        for (Primvar& primvar : result.mesh.primvars) CombineScalar(options, primvar);
+    }
+    result.largestTurnDegrees = AddOffsets(model, options, sum, job);
+    MeasureOffset(model, result);
+    return result;
+}
+
+std::vector<Primvar> MakeOffsetPrimvars(std::string const& name, Model const& model,
+                                        std::vector<double> const& positions) {
+    std::vector<Primvar> primvars;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        Primvar primvar{name + "xyz" [axis], 1, {}};
+        for (size_t i = axis; i < positions.size(); i += 3)
+            primvar.values.push_back(static_cast<float>(positions[i] - model.GetPositions()[i]));
+        primvars.push_back(std::move(primvar));
+    }
+    return primvars;
+}
+
+}  // namespace limn::engine
