@@ -20,6 +20,7 @@ namespace limn::engine {
 
 namespace {
 
+using Level = Far::TopologyLevel;
 using far_ext::SubdivisionRule;
 
 /// Refines values of length N through all levels: of vertices, or of a face-varying channel.
