@@ -78,7 +78,7 @@ private:
 
     /// On each face a lattice whose neighbours are no more than half the separation apart.
     void ChoosePlaces(FlowSurface const& flow, double separation) {
-        constexpr double kMostPlaces = 0x1p27;
+        constexpr double kMostPlaces = 0x1p24;
         auto const& surface = flow.GetSurface();
         FaceSides const sides(surface.IsLoop());
         FlowSurface::Sampler sampler(flow);

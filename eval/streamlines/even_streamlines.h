@@ -30,7 +30,7 @@ struct EvenOptions {
 /// Far     places that are looked at lie D/2 apart and less, vertices among them. Distances are
 ///         those of space, to points of lines.
 /// Threads one line after the other: the result is one and the same
-/// \throws Error  TooLarge: D so small that there would be more than 2^27 places
+/// \throws Error  TooLarge: D so small that there would be more than 2^24 places
 /// Source  [Jobard97]; [Forms 12]
 EvenLines FillEvenly(FlowSurface const& flow, EvenOptions const& options);
 
