@@ -26,7 +26,8 @@ namespace {
 struct SmoothArguments {
     std::string mesh, output, widthMap, widthEdges, widthTexture, picture;
     std::vector<double> view{1.0, 0.6, 0.8};
-    double width = 0.0, widthFactor = 0.12, widthScale = 0.12;
+    double width = 0.0, widthFactor = engine::kDefaultWidthFactor,
+           widthScale = engine::kDefaultWidthFactor;
     std::optional<double> tolerance;
     std::optional<int> sweeps, iterations;
     bool isLocal = false, isGraph = false, preservesVolume = false, limitsWidth = false,
@@ -69,7 +70,7 @@ void CheckOptions(SmoothArguments const& a, CLI::App const& verb) {
     if (a.options.levels > maxLevels) {
         throw Error(
             ErrorCode::BadOption,
-            fmt::format("--levels: {} is not from 1 to {} with --refinement {}", a.options.levels,
+            fmt::format("--levels: {} is not from 0 to {} with --refinement {}", a.options.levels,
                         maxLevels, kSmoothRefinementWords.GetWord(a.options.refinement)));
     }
 }
@@ -107,23 +108,13 @@ engine::FilterWidths MakeWidths(SmoothArguments const& a, CLI::App const& verb,
     return engine::ConstantWidth{width};
 }
 
-/// Triangles stay triangles and all else becomes quads, unless a scheme is asked for: the filter
-/// has no subdivision rule.
-Sdc::SchemeType ChooseScheme(SmoothArguments const& a, CommonOptions const& common,
-                             far_ext::ControlMesh const& cage) {
-    bool const areTriangles = std::all_of(cage.faceSizes.begin(), cage.faceSizes.end(),
-                                          [](int size) { return size == 3; });
-    bool const isFree = !common.scheme || a.IsBisection();
-    return areTriangles && isFree ? Sdc::SCHEME_LOOP : cage.scheme;
-}
-
 void AddToReport(nlohmann::json& report, engine::SmoothReport const& found) {
     auto const number = [](double value) {
         return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
     };
     auto& levels = report["levels"] = nlohmann::json::array();
     for (auto const& level : found.levels) {
-        levels.push_back({{"level", levels.size() + 1},
+        levels.push_back({{"level", level.level},
                           {"unknowns", level.unknowns},
                           {"sweeps", level.sweeps},
                           {"residual", number(level.residual)},
@@ -131,7 +122,9 @@ void AddToReport(nlohmann::json& report, engine::SmoothReport const& found) {
                           {"min_angle_degrees", level.minAngleRadians * 180.0 / std::numbers::pi},
                           {"area_ratio", level.areaRatio},
                           {"frozen_metric", level.isMetricFrozen}});
+        if (found.levels.back().step > 1) levels.back()["step"] = level.step;
     }
+    if (!found.settleMoves.empty()) report["settle_moves"] = found.settleMoves;
     report["converged"] = found.HasConverged();
     report["mean_edge"] = found.meanEdge;
     report["largest_width"] = found.largestWidth;
@@ -168,7 +161,7 @@ std::string Explain(std::string const& path, engine::SmoothReport const& found) 
     return fmt::format(
         "{}: on level {} the residual is {:.2g} after {} iterations; use a larger --tolerance or "
         "--solver exact",
-        path, &missed - found.levels.data() + 1, missed.residual, missed.sweeps);
+        path, missed.level, missed.residual, missed.sweeps);
 }
 
 int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
@@ -180,7 +173,8 @@ int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
                       {{"-o", a.output}, {"--picture", a.picture}});
     auto model = context.Load(a.mesh,
                               Context::Defects::Keep);  // engine::Smooth warns of them, or refuses
-    model = WithScheme(model, ChooseScheme(a, context.GetCommon(), model.GetCage()));
+    if (!context.GetCommon().scheme || a.IsBisection())
+        model = WithScheme(model, engine::ChooseCascadeScheme(model.GetCage()));
     context.GetReport()["inputs"].back()["subdivision"] =
         engine::DescribeSubdivision(model.GetCage());
     auto [mesh, found] = engine::Smooth(model, MakeWidths(a, verb, model), MakeOptions(a, context),
@@ -214,7 +208,8 @@ void AddWidthOptions(CLI::App& verb, SmoothArguments& a) {
     };
     width(AddNumberOption(verb, "--width", a.width, "sigma everywhere, in mesh units", kAnyWidth));
     width(AddNumberOption(verb, "--width-factor", a.widthFactor,
-                          "sigma everywhere, times the mean edge length (default 0.12)",
+                          "sigma everywhere, times the mean edge length (default 0.12; limn info "
+                          "--widths tells how much MESH carries)",
                           kAnyWidth));
     width(verb.add_flag("--local", a.isLocal,
                         "sigma by the edge lengths at each vertex, smoothed along"));
@@ -243,6 +238,14 @@ void AddSolverOptions(CLI::App& verb, SmoothArguments& a) {
                           {1, 1000000}));
     solve(AddNumberOption(verb, "--tolerance", a.tolerance,
                           "cg: to this residual on every level (default 1e-6)", {1e-14, 1.0}));
+    solve(
+        AddNumberOption(verb, "--steps", a.options.steps,
+                        "so many filters one after another, of sigma / sqrt(steps) each; from the "
+                        "second on on the finest mesh (default 1)",
+                        {1, 1000}));
+    solve(AddNumberOption(verb, "--settle", a.options.settle,
+                          "then repeat, until no vertex moves by this share of MESH's diagonal",
+                          {1e-14, 1.0}));
 }
 
 void AddConstraintOptions(CLI::App& verb, SmoothArguments& a) {
@@ -271,7 +274,10 @@ Verb AddSmooth(CLI::App& app) {
     verb->add_option("-o,--output", a->output,
                      "mesh to write, .obj, or .ply with the width at each vertex")
         ->required();
-    AddNumberOption(*verb, "--levels", a->options.levels, "refinements (default 2)", {1, 20});
+    AddNumberOption(
+        *verb, "--levels", a->options.levels,
+        "refinements (default 2); 0: MESH as it is, of triangles or of quads, is filtered",
+        {0, 20});
     AddWidthOptions(*verb, *a);
     AddSolverOptions(*verb, *a);
     AddConstraintOptions(*verb, *a);

@@ -45,8 +45,18 @@ enum class OnCollapse {
     KeepResult   ///< goes on to the last level
 };
 
+/// The width, over the mean edge length, where none is given: below what coarse closed meshes carry
+/// [Cascade 7].
+inline constexpr double kDefaultWidthFactor = 0.12;
+
 struct SmoothOptions {
-    int levels = 2;
+    int levels = 2;  ///< 0: the mesh stays as it is, and is solved on once
+    /// Solves of width sigma / sqrt(steps) each, with metric and right side of the step before. The
+    /// cascade is the first; the others run on its finest mesh.
+    int steps = 1;
+    /// Each step is repeated on the finest mesh, with the metric of what came out, until no vertex
+    /// moves by more than this share of the bounding box's diagonal; 30 times at most.
+    std::optional<double> settle{};
     SmoothRefinement refinement = SmoothRefinement::Quadrisect;
     far_ext::BoundaryRule boundary = far_ext::BoundaryRule::Fixed;
     eval::CascadeSolver solver = eval::CascadeSolver::ConjugateGradients;
@@ -60,11 +70,16 @@ struct SmoothOptions {
     std::optional<MeshTarget> target{};
 };
 
-/// The closed component that shrank most.
+/// The closed component that shrank most in a step.
 struct SmoothShrinkage {
     Index firstVertex = 0;     ///< of the component, in the control mesh
     int level = 0;             ///< where it was least
-    double radiusRatio = 1.0;  ///< mean distance from its middle, over that of the start surface
+    double radiusRatio = 1.0;  ///< mean distance from its middle, over that before the step
+};
+
+/// A solve of the cascade or of a later step, with the repetitions that settled it.
+struct SmoothSolve : eval::CascadeStepReport {
+    int level = 0, step = 1;
 };
 
 /// A volume that was to be preserved.
@@ -75,7 +90,8 @@ struct SmoothVolume {
 };
 
 struct SmoothReport {
-    std::vector<eval::CascadeStepReport> levels;
+    std::vector<SmoothSolve> levels;
+    std::vector<double> settleMoves;  ///< per repetition: the largest move over the diagonal
     Precision precision = Precision::Double;  ///< what the mesh's coordinates are rounded to
     double meanEdge = 0.0;                    ///< of the control mesh
     double largestWidth = 0.0;                ///< as used
@@ -107,6 +123,8 @@ struct SmoothResult {
 ///           linear interpolation.
 /// Result    an approximation of the filtered surface, with texture coordinates by the model's
 ///           rule.
+/// Fairing   Without refinement faces must be all triangles or all quads. A single solve exists for
+///           every width, so that nothing collapses unless it is to settle.
 /// Collapse  A width above what a closed component carries has no fixed point: it shrinks to
 ///           nothing with the levels. Where one shrank suspiciously, the critical width is measured
 ///           on a grid of 10 000 vertices at most [Cascade 7].
@@ -114,7 +132,8 @@ struct SmoothResult {
 /// \param model   of the scheme Loop where triangles are to stay triangles
 /// \param job     told of progress, and of a metric that was frozen, sharp corners, volumes that
 ///                could not be kept, a precision that was not asked for or loses too much
-/// \throws Error  BadMesh: not manifold or oriented two ways; a width above 1e6 of the mesh's size;
+/// \throws Error  BadMesh: not manifold or oriented two ways; without refinement, other faces; a
+/// width above 1e6 of the mesh's size;
 ///                for graphs, faces that overlap in the plane.  BadOption: a width that is no
 ///                number from 0 up, a residual for Jacobi sweeps, widths for another number of
 ///                vertices.  As SmoothLevels

@@ -17,6 +17,10 @@ namespace limn::engine {
 
 enum class SmoothRefinement { Quadrisect, Bisect };
 
+/// The scheme to refine by where none is asked for: triangles stay triangles and all else becomes
+/// quads, since the filter has no subdivision rule.
+Sdc::SchemeType ChooseCascadeScheme(far_ext::ControlMesh const& cage);
+
 /// A cascade's meshes, made level after level, with what hangs on their faces and corners.
 class SmoothLevels {
 public:
@@ -26,6 +30,11 @@ public:
     /// \throws Error        BadMesh: bisection of faces that are no triangles.  As
     ///                      RefineUniformly
     SmoothLevels(Model const& model, int numLevels, SmoothRefinement refinement, bool keepsCreases);
+
+    /// The model's own mesh as a level, for a filter without refinement.
+    ///
+    /// \throws Error  BadMesh: faces that are not all triangles or all quads
+    far_ext::CascadeMesh const& MakeUnrefined();
 
     /// Makes the next level's mesh. \return it, until the next call
     far_ext::CascadeMesh const& MakeNext();
@@ -45,6 +54,7 @@ public:
     Scene MakeScene(Job& job) const;
 
 private:
+    void DropTags();
     Scene MakeBisectedScene() const;
 
     Model const& _model;

@@ -65,6 +65,10 @@ public:
     /// Solves once more on the same level, with the metric of the present surface.
     CascadeStepReport Repeat(int iterations);
 
+    /// Takes the present surface and widths for the start of what follows: another step of the
+    /// filter, not another level of the same one.
+    void StartHere() { _x0 = _x; }
+
     /// Per vertex of the level, in the public order.
     std::vector<double> GetPositions() const;
     std::vector<double> GetStartPositions() const;
