@@ -6,6 +6,7 @@
 
 #include "engine/scene/extent.h"
 #include "far_ext/rows/points.h"
+#include "far_ext/topology/boundary.h"
 
 namespace limn::engine {
 
@@ -44,6 +45,13 @@ std::vector<double> Interpolate(far_ext::CascadeMesh const& mesh,
         points[vertex] /= end - begin;
     }
     return fine;
+}
+
+std::optional<eval::KeptFeatures> ScaleFeatures(Model const& model, SmoothOptions const& options,
+                                                double unit) {
+    if (!options.keptFeatures) return std::nullopt;
+    double const meanEdge = far_ext::FindMeanEdgeLength(model.GetLevel(), model.GetPositions());
+    return eval::KeptFeatures{*options.keptFeatures * unit, meanEdge / unit};
 }
 
 double FindLargestMove(std::span<double const> from, std::span<double const> to) {

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "engine/smooth/smooth.h"
 #include "far_ext/cascade/cascade_level.h"
 
 namespace limn::engine {
@@ -28,6 +30,10 @@ std::vector<int> Inherit(far_ext::CascadeMesh const& mesh, std::vector<int> cons
 /// Positions of the coarser mesh, interpolated linearly as the cascade does.
 std::vector<double> Interpolate(far_ext::CascadeMesh const& mesh,
                                 std::vector<double> const& coarse);
+
+/// What a filter that keeps features is given, in a cascade's unit; none for others.
+std::optional<eval::KeptFeatures> ScaleFeatures(Model const& model, SmoothOptions const& options,
+                                                double unit);
 
 /// The longest way that a point goes from one place to the other.
 double FindLargestMove(std::span<double const> from, std::span<double const> to);

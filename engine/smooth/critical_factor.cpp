@@ -62,8 +62,10 @@ double MeasureCriticalFactor(Model const& model, ScaledWidths const& widths,
         if (!given.empty()) scaled.atLevels.push_back(Times(1.0 / unit, std::move(given)));
     }
     auto const origin = FindFloatOrigin(FindExtent(model.GetPositions()));
-    return eval::FindCriticalFactor(rows, ToCascade(model.GetPositions(), origin, unit), scaled,
-                                    ofVertex, components.isClosed, [&] { job.CheckStopped(); });
+    return eval::FindCriticalFactor(
+        rows, ToCascade(model.GetPositions(), origin, unit), scaled, ofVertex, components.isClosed,
+        {.order = options.order, .features = ScaleFeatures(model, options, unit)},
+        [&] { job.CheckStopped(); });
 }
 
 std::optional<double> MeasureCriticalWidth(Model const& model, Job& job) {

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/smooth/adaptive_marks.h"
 #include "engine/smooth/cascade_space.h"
 #include "engine/smooth/critical_factor.h"
 #include "engine/smooth/smooth_checks.h"
@@ -29,9 +30,13 @@ constexpr double kLargestWidth =
 constexpr int kMaxIterations = 20000;  // of conjugate gradients on a level
 constexpr int kMaxSettling = 30;       // solves
 
-/// The width of one step, of a width of 1: variances add up.
+/// The share of what an adaptive mesh may be off that a triangle's sagitta may have [Cascade 13].
+constexpr double kSagittaShare = 0.4;
+
+/// The width of one step, of a width of 1: what adds up is variances or, in order 4, their squares.
 double GetStepWidth(SmoothOptions const& options) {
-    return 1.0 / std::sqrt(static_cast<double>(options.steps));
+    double const root = std::sqrt(static_cast<double>(options.steps));
+    return 1.0 / (options.order == 4 ? std::sqrt(root) : root);
 }
 
 /// How far the closed component that shrank most did; 1 where none did.
@@ -55,6 +60,7 @@ public:
           _ofVertex(_components.ofVertex),
           _start(model.GetPositions()),
           _levels(model, options.levels, options.refinement, options.keepsCreases),
+          _startMesh(_levels.GetMesh()),
           _diagonal(FindExtent(model.GetPositions()).GetDiagonal()),
           _unit(FindUnit(model.GetPositions())),
           _widthUnit(_unit / GetStepWidth(options)),
@@ -69,7 +75,7 @@ public:
         size_t total = static_cast<size_t>(_options.steps - 1) * GetEffort(_options.levels);
         for (int level = FirstLevel(); level <= _options.levels; ++level) total += GetEffort(level);
         _job.Start("smooth", total);
-        bool isDone = RunLevels() && Settle();
+        bool isDone = (_options.adaptive ? RunPasses() : RunLevels()) && Settle();
         for (_step = 2; isDone && _step <= _options.steps; ++_step) {
             _job.CheckStopped();
             _cascade.StartHere();
@@ -77,6 +83,7 @@ public:
             AddSolve(_cascade.Repeat(CountIterations()));
             isDone = Settle();
         }
+        if (_options.adaptive && isDone) DescribeAdaption();
         _job.Finish();
         return {isDone ? std::optional(MakeRoundedScene()) : std::nullopt, std::move(_report)};
     }
@@ -89,10 +96,13 @@ private:
                 .tolerance = stop ? stop->residual : 0.0,
                 .width = constant ? *constant / _widthUnit : -1.0,
                 .isGraph = IsGraph(),
-                .progress = [this](double share) {
-                    _job.CheckStopped();
-                    if (!_isSettling) AdvanceTo(share);
-                }};
+                .progress =
+                    [this](double share) {
+                        _job.CheckStopped();
+                        if (!_isSettling) AdvanceTo(share);
+                    },
+                .order = _options.order,
+                .features = ScaleFeatures(_model, _options, _unit)};
     }
 
     int FirstLevel() const { return std::min(1, _options.levels); }
@@ -108,16 +118,68 @@ private:
         return isDone;
     }
 
+    /// Cuts what is bent too much until nothing is. \return as MayGoOn
+    bool RunPasses() {
+        SmoothAdaption& adaption = _report.adaption.emplace();
+        AdaptiveMarks marks = MarkBent();
+        bool isDone = true;
+        do {  // at least one solve, on the start mesh where nothing is to be cut
+            _job.CheckStopped();
+            if (marks.IsAny()) _level = ++adaption.passes;
+            StepTo(_levels.MakeNext(marks.isMarked));
+            isDone = MayGoOn();
+            marks = MarkBent();
+        } while (isDone && marks.IsAny() && adaption.passes < _options.levels);
+        if (isDone && marks.IsAny()) {
+            _job.Warn(fmt::format(
+                "{}: {} passes of bisection leave an error of about {:.2g} of the "
+                "diagonal where {:.2g} is asked for; more `levels`, or a larger "
+                "width, reach it",
+                _model.GetPath(), adaption.passes, EstimateError(marks), *_options.adaptive));
+        }
+        return isDone;
+    }
+
+    AdaptiveMarks MarkBent() {
+        std::vector<double> sigmas;
+        if (_report.levels.empty()) sigmas = _widths.SampleLevel(_levels, _start);
+        if (sigmas.empty()) sigmas = Times(_widthUnit, _cascade.GetWidths());
+        return MarkBentTriangles(_levels.GetMesh(), Times(_unit, _cascade.GetPositions()), sigmas,
+                                 _widths, kSagittaShare * *_options.adaptive * _diagonal);
+    }
+
+    double EstimateError(AdaptiveMarks const& marks) const {
+        return marks.largest > 0.0 ? marks.largest / (kSagittaShare * _diagonal) : 0.0;
+    }
+
+    void DescribeAdaption() {
+        SmoothAdaption& adaption = *_report.adaption;
+        adaption.estimated = EstimateError(MarkBent());
+        adaption.vertices = _levels.GetMesh().numVertices;
+        adaption.smallestEdge =
+            FindShortestEdge(_levels.GetMesh(), Times(_unit, _cascade.GetPositions()));
+        adaption.uniformVertices = CountAfterQuarterings(_startMesh, (adaption.passes + 1) / 2);
+    }
+
+    /// Whether what is left to move is little enough.
+    bool HasSettled() const {
+        std::vector<double> const& moves = _report.settleMoves;
+        if (!_options.adaptive) return moves.back() < *_options.settle;
+        // Moves shrink by about the same factor each time: the rest is a geometric series.
+        double const ratio =
+            moves.size() == 1 ? 0.9 : std::min(0.95, moves.back() / moves[moves.size() - 2]);
+        return moves.back() * ratio / (1.0 - ratio) < *_options.adaptive / 5.0;
+    }
+
     /// Solves on the last mesh until it hardly moves. \return as MayGoOn
     bool Settle() {
-        if (!_options.settle) return true;
+        if (!_options.settle && !_options.adaptive) return true;
         _job.Start("settling");
         _isSettling = true;
         bool isDone = true, isSettled = false;
         for (int solve = 0; isDone && !isSettled && solve < kMaxSettling; ++solve) {
-            double const move = Repeat();
-            _report.settleMoves.push_back(move);
-            isSettled = move < *_options.settle;
+            _report.settleMoves.push_back(Repeat());
+            isSettled = HasSettled();
             isDone = MayGoOn();
         }
         if (isDone && !isSettled) {
@@ -304,6 +366,7 @@ private:
     std::vector<int> _ofVertex;
     std::vector<double> _start;  // the start surface on the present level
     SmoothLevels _levels;
+    CascadeMesh _startMesh;         // of bisection
     double _diagonal;               // of the start surface
     double _unit, _widthUnit;       // of the cascade's lengths and, with steps, of its widths
     std::array<double, 3> _origin;  // what its positions are relative to
@@ -323,13 +386,17 @@ SmoothResult RunOnce(Model const& model, ScaledWidths const& widths, SmoothOptio
                     : SmoothRun<double>(model, widths, options, isAgain, job).Run();
 }
 
+/// Options as the run takes them: passes of bisection for levels where these are adaptive.
+SmoothOptions CountPasses(SmoothOptions options) {
+    if (!options.adaptive) return options;
+    options.refinement = SmoothRefinement::Bisect;
+    options.levels *= 2;
+    return options;
+}
+
 void CheckInput(Model const& model, FilterWidths const& widths, SmoothOptions const& options,
                 Job& job) {
-    if (options.solver == eval::CascadeSolver::Jacobi &&
-        std::holds_alternative<StopAtResidual>(options.stop)) {
-        throw Error(ErrorCode::BadOption,
-                    "Jacobi sweeps do not watch the residual; `stop` needs their number");
-    }
+    CheckOptions(options);
     RefuseDefects(model, job);
     CheckWidths(widths, model);
     double const unit = FindUnit(model.GetPositions()),
@@ -341,6 +408,7 @@ void CheckInput(Model const& model, FilterWidths const& widths, SmoothOptions co
                                 model.GetPath(), largest, kLargestWidth, unit));
     }
     if (options.constraint == SmoothConstraint::Graph) RequireGraph(model);
+    if (options.keptFeatures) RequireTriangles(model);
 }
 
 /// Where a component shrank suspiciously, measures what it carries, and limits the width to that
@@ -384,9 +452,10 @@ bool SmoothReport::HasConverged() const {
                                         [](auto const& level) { return level.converged; });
 }
 
-SmoothResult Smooth(Model const& model, FilterWidths const& widths, SmoothOptions const& options,
+SmoothResult Smooth(Model const& model, FilterWidths const& widths, SmoothOptions const& asked,
                     Job& job) {
-    CheckInput(model, widths, options, job);
+    CheckInput(model, widths, asked, job);
+    SmoothOptions const options = CountPasses(asked);
     SmoothResult result =
         WatchCollapse(model, widths, options, job,
                       RunOnce(model, ScaledWidths(widths, 1.0), options, false, job));

@@ -57,6 +57,16 @@ struct SmoothOptions {
     /// Each step is repeated on the finest mesh, with the metric of what came out, until no vertex
     /// moves by more than this share of the bounding box's diagonal; 30 times at most.
     std::optional<double> settle{};
+    /// 2: curvature motion. 4: (M + L M^-1 L) X = M X0, which keeps more of the volume, with a gain
+    /// of 1/2 at the same wave length; without refinement only, steps are of sigma / steps^(1/4).
+    int order = 2;
+    /// Where normals turn by more over a length (1/length), the filter hardly acts; without
+    /// refinement, on triangles only.
+    std::optional<double> keptFeatures{};
+    /// Cuts triangles only where they lie by more than this share of the bounding box's diagonal
+    /// from the surface, about, in up to twice as many passes of bisection as levels; then lets it
+    /// settle to a fifth of that. `refinement` means nothing then.
+    std::optional<double> adaptive{};
     SmoothRefinement refinement = SmoothRefinement::Quadrisect;
     far_ext::BoundaryRule boundary = far_ext::BoundaryRule::Fixed;
     eval::CascadeSolver solver = eval::CascadeSolver::ConjugateGradients;
@@ -89,9 +99,19 @@ struct SmoothVolume {
     bool isMet = false;             ///< before it was rounded
 };
 
+/// What became of refining adaptively; errors are over the bounding box's diagonal.
+struct SmoothAdaption {
+    double estimated = 0.0;  ///< error left, about
+    int passes = 0;
+    Index vertices = 0;
+    double smallestEdge = 0.0;
+    double uniformVertices = 0.0;  ///< of quarterings as deep, two passes each
+};
+
 struct SmoothReport {
     std::vector<SmoothSolve> levels;
     std::vector<double> settleMoves;  ///< per repetition: the largest move over the diagonal
+    std::optional<SmoothAdaption> adaption;
     Precision precision = Precision::Double;  ///< what the mesh's coordinates are rounded to
     double meanEdge = 0.0;                    ///< of the control mesh
     double largestWidth = 0.0;                ///< as used
@@ -117,6 +137,9 @@ struct SmoothResult {
     SmoothReport report;
 };
 
+/// Refuses options that do not go together. \throws Error  BadOption: both named
+void CheckOptions(SmoothOptions const& options);
+
 /// Refines a mesh and smooths it by curvature motion: the cascadic geometric filter.
 ///
 /// Topology  of uniform refinement with the model's scheme, or of bisection; positions start from
@@ -136,7 +159,7 @@ struct SmoothResult {
 /// width above 1e6 of the mesh's size;
 ///                for graphs, faces that overlap in the plane.  BadOption: a width that is no
 ///                number from 0 up, a residual for Jacobi sweeps, widths for another number of
-///                vertices.  As SmoothLevels
+///                vertices, options that do not go together.  As SmoothLevels
 /// \throws Stopped
 /// Source  [Diewald02] Sec. 5 to 8; [Cascade 2], [Cascade 9]
 SmoothResult Smooth(Model const& model, FilterWidths const& widths, SmoothOptions const& options,

@@ -71,10 +71,12 @@ SmoothLevels::SmoothLevels(Model const& model, int numLevels, SmoothRefinement r
       _keepsCreases(keepsCreases),
       _uvs(model.GetUVs()),
       _primvars(model.GetPrimvars()) {
-    if (refinement == SmoothRefinement::Bisect && numLevels > 0)
+    if (refinement == SmoothRefinement::Bisect && numLevels > 0) {
         _bisection = StartBisection(model, keepsCreases);
-    else
+        _mesh = _bisection->GetMesh();
+    } else {
         _refiner = MakeUniformRefiner(model.GetCage(), model.GetPath(), numLevels);
+    }
 }
 
 void SmoothLevels::DropTags() {
@@ -91,13 +93,21 @@ far_ext::CascadeMesh const& SmoothLevels::MakeUnrefined() {
 
 far_ext::CascadeMesh const& SmoothLevels::MakeNext() {
     ++_level;
-    if (_refiner) {
-        _mesh = far_ext::MakeCascadeMesh(*_refiner, _level);
-        DropTags();
-        return _mesh;
-    }
-    Index const numCoarse = _level == 1 ? _model.GetCage().numVertices : _mesh.numVertices;
-    _mesh = _bisection->Refine();
+    if (_bisection) return TakeBisected(_bisection->Refine());
+    _mesh = far_ext::MakeCascadeMesh(*_refiner, _level);
+    DropTags();
+    return _mesh;
+}
+
+far_ext::CascadeMesh const& SmoothLevels::MakeNext(std::span<char const> isMarked) {
+    ++_level;
+    return TakeBisected(_bisection->Refine(isMarked));
+}
+
+/// Carries primvars and texture coordinates along.
+far_ext::CascadeMesh const& SmoothLevels::TakeBisected(far_ext::CascadeMesh const& fine) {
+    Index const numCoarse = _mesh.numVertices;
+    _mesh = fine;
     std::vector<std::array<Index, 2>> parents;
     for (Index vertex = numCoarse; vertex < _mesh.numVertices; ++vertex) {
         Index const* const own = &_mesh.parents[static_cast<size_t>(_mesh.parentOffsets[vertex])];

@@ -39,7 +39,10 @@ public:
     /// Makes the next level's mesh. \return it, until the next call
     far_ext::CascadeMesh const& MakeNext();
 
-    /// The mesh made last; before that none.
+    /// The same by a bisection of marked triangles only, see far_ext::Bisection.
+    far_ext::CascadeMesh const& MakeNext(std::span<char const> isMarked);
+
+    /// The mesh made last; before that the model's own where it is to be bisected, otherwise none.
     far_ext::CascadeMesh const& GetMesh() const { return _mesh; }
 
     /// Per face of the mesh made last: the face of the model it lies in.
@@ -55,6 +58,7 @@ public:
 
 private:
     void DropTags();
+    far_ext::CascadeMesh const& TakeBisected(far_ext::CascadeMesh const& fine);
     Scene MakeBisectedScene() const;
 
     Model const& _model;
