@@ -7,6 +7,8 @@
 #include "engine/scene/mesh_info.h"
 #include "engine/scene/subdivision_names.h"
 #include "engine/scene/udim.h"
+#include "engine/smooth/critical_factor.h"
+#include "far_ext/topology/boundary.h"
 
 namespace limn::cli {
 
@@ -101,17 +103,48 @@ std::string ToText(engine::Model const& model, engine::MeshInfo const& info) {
     return text;
 }
 
+/// What limn smooth takes for a width, and what the mesh carries.
+struct WidthInfo {
+    double meanEdge;
+    std::optional<double> critical;
+
+    double GetDefault() const { return engine::kDefaultWidthFactor * meanEdge; }
+
+    static WidthInfo Measure(engine::Model const& model, engine::Job& job) {
+        job.Start("measuring the critical width");
+        auto const scheme = engine::ChooseCascadeScheme(model.GetCage());
+        return {far_ext::FindMeanEdgeLength(model.GetLevel(), model.GetPositions()),
+                engine::MeasureCriticalWidth(WithScheme(model, scheme), job)};
+    }
+
+    nlohmann::json ToJson() const {
+        return {{"mean_edge", meanEdge},
+                {"default", GetDefault()},
+                {"critical", critical ? nlohmann::json(*critical) : nlohmann::json()}};
+    }
+
+    std::string ToText() const {
+        return fmt::format("  {:<14} default {:.4g} ({} of the mean edge), {}\n", "smooth width",
+                           GetDefault(), engine::kDefaultWidthFactor,
+                           critical ? fmt::format("critical {:.4g} ({:.3g} of it)", *critical,
+                                                  *critical / meanEdge)
+                                    : "no critical one: nothing is closed");
+    }
+};
+
 }  // namespace
 
 Verb AddInfo(CLI::App& app) {
     struct InfoArguments {
         std::string mesh;
-        bool asJson = false;
+        bool asJson = false, hasWidths = false;
     };
     auto const a = std::make_shared<InfoArguments>();
     CLI::App* const verb = app.add_subcommand("info", "Tell what limn understood of a mesh");
     verb->add_option("MESH", a->mesh, "OBJ, PLY or OFF")->required();
     verb->add_flag("--json", a->asJson, "one JSON object instead of text");
+    verb->add_flag("--widths", a->hasWidths,
+                   "also measure the largest width of limn smooth that MESH carries");
     verb->footer("Example:\n  limn info scenes/spot/spot.obj --json");
     return {verb, [a](Context& context) {
                 context.KeepStdoutForData(true);
@@ -120,11 +153,16 @@ Verb AddInfo(CLI::App& app) {
                 context.GetJob().Start("describing");
                 auto const info = engine::DescribeMesh(model);
                 auto json = ToJson(info, model);
-                std::string const text =
-                    a->asJson
-                        ? json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"
-                        : ToText(model, info);
-                PrintData(text);
+                std::string text = ToText(model, info);
+                if (a->hasWidths) {
+                    auto const widths = WidthInfo::Measure(model, context.GetJob());
+                    json["smooth_widths"] = widths.ToJson();
+                    text += widths.ToText();
+                }
+                PrintData(a->asJson
+                              ? json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) +
+                                    "\n"
+                              : text);
                 json.erase("options");  // of a report: the words as typed; "inputs" has the rules
                 context.GetReport()->update(json);
                 return kDone;

@@ -41,6 +41,7 @@ engine::MorphOptions MakeOptions(MorphArguments const& a) {
 int Run(MorphArguments const& a, CLI::App const& verb, Context& context) {
     for (char const* flag : {"--detail", "--rate", "--steps"})
         RefuseTogether(verb, {"--schedule", flag});
+    RequirePrefix("-o", a.prefix);
     std::vector<NamedFile> const read{{"FROM", a.from}, {"TO", a.to}, {"--schedule", a.schedule}};
     context.KeepApart(read, {});
     auto const options = MakeOptions(a);

@@ -26,9 +26,11 @@ namespace {
 struct SmoothArguments {
     std::string mesh, output, widthMap, widthEdges, widthTexture, picture;
     std::vector<double> view{1.0, 0.6, 0.8};
-    double width = 0.0, widthFactor = 0.12, widthScale = 0.12;
+    double width = 0.0, widthFactor = engine::kDefaultWidthFactor,
+           widthScale = engine::kDefaultWidthFactor;
     std::optional<double> tolerance;
-    std::optional<int> sweeps, iterations;
+    std::optional<int> sweeps, iterations, steps;
+    std::optional<std::string> keptFeatures;
     bool isLocal = false, isGraph = false, preservesVolume = false, limitsWidth = false,
          keepsResult = false;
     engine::SmoothOptions options;
@@ -65,13 +67,29 @@ void CheckOptions(SmoothArguments const& a, CLI::App const& verb) {
     CheckSolver(a, verb);
     RefuseTogether(verb, {"--graph", "--preserve-volume"});
     RefuseTogether(verb, {"--limit-width", "--keep-result"});
+    if (a.options.adaptive) {
+        if (verb.count("--refinement") > 0 && !a.IsBisection())
+            throw Error(ErrorCode::BadOption,
+                        "--refinement quadrisect and --adaptive exclude each other");
+        return;
+    }
     int const maxLevels = a.IsBisection() ? 20 : 10;
     if (a.options.levels > maxLevels) {
         throw Error(
             ErrorCode::BadOption,
-            fmt::format("--levels: {} is not from 1 to {} with --refinement {}", a.options.levels,
+            fmt::format("--levels: {} is not from 0 to {} with --refinement {}", a.options.levels,
                         maxLevels, kSmoothRefinementWords.GetWord(a.options.refinement)));
     }
+}
+
+/// LAMBDA, or LAMBDA% of 1 / mean edge.
+std::optional<double> ParseKeptFeatures(SmoothArguments const& a, double meanEdge) {
+    if (!a.keptFeatures) return std::nullopt;
+    bool const isShare = a.keptFeatures->ends_with('%');
+    double const number =
+        ParseNumber("--keep-features", a.keptFeatures->substr(0, a.keptFeatures->size() - isShare),
+                    NumberRange<double>{.low = 1e-12});
+    return isShare ? number / (100.0 * meanEdge) : number;
 }
 
 engine::SmoothStop MakeStop(SmoothArguments const& a) {
@@ -82,9 +100,14 @@ engine::SmoothStop MakeStop(SmoothArguments const& a) {
     return a.tolerance ? engine::StopAtResidual{*a.tolerance} : engine::StopAtResidual{};
 }
 
-engine::SmoothOptions MakeOptions(SmoothArguments const& a, Context const& context) {
+/// \param meanEdge  of the mesh
+engine::SmoothOptions MakeOptions(SmoothArguments const& a, CLI::App const& verb,
+                                  Context const& context, double meanEdge) {
     engine::SmoothOptions options = a.options;
     options.stop = MakeStop(a);
+    if (options.adaptive && verb.count("--levels") == 0) options.levels = 8;
+    options.keptFeatures = ParseKeptFeatures(a, meanEdge);
+    options.steps = a.steps.value_or(options.keptFeatures ? 3 : 1);
     if (a.isGraph) options.constraint = engine::SmoothConstraint::Graph;
     if (a.preservesVolume) options.constraint = engine::SmoothConstraint::Volume;
     if (a.limitsWidth) options.onCollapse = engine::OnCollapse::LimitWidth;
@@ -107,23 +130,14 @@ engine::FilterWidths MakeWidths(SmoothArguments const& a, CLI::App const& verb,
     return engine::ConstantWidth{width};
 }
 
-/// Triangles stay triangles and all else becomes quads, unless a scheme is asked for: the filter
-/// has no subdivision rule.
-Sdc::SchemeType ChooseScheme(SmoothArguments const& a, CommonOptions const& common,
-                             far_ext::ControlMesh const& cage) {
-    bool const areTriangles = std::all_of(cage.faceSizes.begin(), cage.faceSizes.end(),
-                                          [](int size) { return size == 3; });
-    bool const isFree = !common.scheme || a.IsBisection();
-    return areTriangles && isFree ? Sdc::SCHEME_LOOP : cage.scheme;
-}
-
-void AddToReport(nlohmann::json& report, engine::SmoothReport const& found) {
+void AddToReport(nlohmann::json& report, engine::SmoothReport const& found,
+                 engine::SmoothOptions const& options) {
     auto const number = [](double value) {
         return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
     };
     auto& levels = report["levels"] = nlohmann::json::array();
     for (auto const& level : found.levels) {
-        levels.push_back({{"level", levels.size() + 1},
+        levels.push_back({{"level", level.level},
                           {"unknowns", level.unknowns},
                           {"sweeps", level.sweeps},
                           {"residual", number(level.residual)},
@@ -131,6 +145,18 @@ void AddToReport(nlohmann::json& report, engine::SmoothReport const& found) {
                           {"min_angle_degrees", level.minAngleRadians * 180.0 / std::numbers::pi},
                           {"area_ratio", level.areaRatio},
                           {"frozen_metric", level.isMetricFrozen}});
+        if (found.levels.back().step > 1) levels.back()["step"] = level.step;
+    }
+    if (found.adaption) {
+        report["adaptive"] = {{"asked", *options.adaptive},
+                              {"estimated", found.adaption->estimated},
+                              {"passes", found.adaption->passes},
+                              {"vertices", found.adaption->vertices},
+                              {"smallest_edge", found.adaption->smallestEdge},
+                              {"uniform_vertices", found.adaption->uniformVertices},
+                              {"settle_moves", found.settleMoves}};
+    } else if (!found.settleMoves.empty()) {
+        report["settle_moves"] = found.settleMoves;
     }
     report["converged"] = found.HasConverged();
     report["mean_edge"] = found.meanEdge;
@@ -168,11 +194,12 @@ std::string Explain(std::string const& path, engine::SmoothReport const& found) 
     return fmt::format(
         "{}: on level {} the residual is {:.2g} after {} iterations; use a larger --tolerance or "
         "--solver exact",
-        path, &missed - found.levels.data() + 1, missed.residual, missed.sweeps);
+        path, missed.level, missed.residual, missed.sweeps);
 }
 
 int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     CheckOptions(a, verb);
+    engine::CheckOptions(MakeOptions(a, verb, context, 1.0));
     context.KeepApart({{"MESH", a.mesh},
                        {"--width-map", a.widthMap},
                        {"--width-edges", a.widthEdges},
@@ -180,12 +207,14 @@ int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
                       {{"-o", a.output}, {"--picture", a.picture}});
     auto model = context.Load(a.mesh,
                               Context::Defects::Keep);  // engine::Smooth warns of them, or refuses
-    model = WithScheme(model, ChooseScheme(a, context.GetCommon(), model.GetCage()));
+    if (!context.GetCommon().scheme || a.IsBisection() || a.options.adaptive)
+        model = WithScheme(model, engine::ChooseCascadeScheme(model.GetCage()));
     context.GetReport()["inputs"].back()["subdivision"] =
         engine::DescribeSubdivision(model.GetCage());
-    auto [mesh, found] = engine::Smooth(model, MakeWidths(a, verb, model), MakeOptions(a, context),
-                                        context.GetJob());
-    AddToReport(context.GetReport(), found);
+    double const meanEdge = far_ext::FindMeanEdgeLength(model.GetLevel(), model.GetPositions());
+    auto [mesh, found] = engine::Smooth(model, MakeWidths(a, verb, model),
+                                        MakeOptions(a, verb, context, meanEdge), context.GetJob());
+    AddToReport(context.GetReport(), found, a.options);
     if (!found.HasConverged() && !a.keepsResult) return context.MissTarget(Explain(a.mesh, found));
 
     if (engine::GetEnding(a.output) == ".obj")  // which has no place for the widths
@@ -214,7 +243,8 @@ void AddWidthOptions(CLI::App& verb, SmoothArguments& a) {
     };
     width(AddNumberOption(verb, "--width", a.width, "sigma everywhere, in mesh units", kAnyWidth));
     width(AddNumberOption(verb, "--width-factor", a.widthFactor,
-                          "sigma everywhere, times the mean edge length (default 0.12)",
+                          "sigma everywhere, times the mean edge length (default 0.12; limn info "
+                          "--widths tells how much MESH carries)",
                           kAnyWidth));
     width(verb.add_flag("--local", a.isLocal,
                         "sigma by the edge lengths at each vertex, smoothed along"));
@@ -243,6 +273,18 @@ void AddSolverOptions(CLI::App& verb, SmoothArguments& a) {
                           {1, 1000000}));
     solve(AddNumberOption(verb, "--tolerance", a.tolerance,
                           "cg: to this residual on every level (default 1e-6)", {1e-14, 1.0}));
+    solve(AddNumberOption(verb, "--adaptive", a.options.adaptive,
+                          "cut triangles (in two) only where the result would be off by more than "
+                          "this share of MESH's diagonal, and settle to a fifth of it",
+                          {1e-9, 1.0}));
+    solve(
+        AddNumberOption(verb, "--steps", a.steps,
+                        "so many filters one after another, of sigma / sqrt(steps) each; from the "
+                        "second on on the finest mesh (default 1, --keep-features: 3)",
+                        {1, 1000}));
+    solve(AddNumberOption(verb, "--settle", a.options.settle,
+                          "then repeat, until no vertex moves by this share of MESH's diagonal",
+                          {1e-14, 1.0}));
 }
 
 void AddConstraintOptions(CLI::App& verb, SmoothArguments& a) {
@@ -251,6 +293,13 @@ void AddConstraintOptions(CLI::App& verb, SmoothArguments& a) {
                        "fixed (default); natural: free, its triangles degenerate with the levels"));
     keep(verb.add_flag("--keep-creases", a.options.keepsCreases,
                        "sharp edges and corners stay sharp: the filter does not act across them"));
+    keep(AddNumberOption(verb, "--order", a.options.order,
+                         "2 (default); 4, with --levels 0: loses less volume", {2, 4}));
+    keep(
+        verb.add_option("--keep-features", a.keptFeatures,
+                        "LAMBDA or LAMBDA%, with --levels 0: do not act where normals turn by more "
+                        "than that over a length (% of 1 / mean edge; 10 to 20% for scans)")
+            ->type_name("LAMBDA"));
     keep(verb.add_flag("--preserve-volume", a.preservesVolume,
                        "closed components keep their volume"));
     keep(verb.add_flag("--graph", a.isGraph,
@@ -271,7 +320,10 @@ Verb AddSmooth(CLI::App& app) {
     verb->add_option("-o,--output", a->output,
                      "mesh to write, .obj, or .ply with the width at each vertex")
         ->required();
-    AddNumberOption(*verb, "--levels", a->options.levels, "refinements (default 2)", {1, 20});
+    AddNumberOption(*verb, "--levels", a->options.levels,
+                    "refinements (default 2, with --adaptive at most 8); 0: MESH as it is, of "
+                    "triangles or of quads, is filtered",
+                    {0, 20});
     AddWidthOptions(*verb, *a);
     AddSolverOptions(*verb, *a);
     AddConstraintOptions(*verb, *a);

@@ -9,7 +9,9 @@ namespace {
 
 constexpr OptionName kOptionNames[] = {
     {"Graph", "--graph"},
+    {"Natural", "--boundary-rule natural"},
     {"PaintedWidths", "--width-texture"},
+    {"adaptive", "--adaptive"},
     {"against", "--against"},
     {"alpha", "--alpha"},
     {"arcFluxes", "--arc-flux"},
@@ -30,6 +32,7 @@ constexpr OptionName kOptionNames[] = {
     {"harmonics", "--harmonic"},
     {"isBalanced", "--balance"},
     {"isVector", "--vector"},
+    {"keptFeatures", "--keep-features"},
     {"laplacian", "--laplacian"},
     {"last", "--to-band"},
     {"levels", "--levels"},
@@ -38,6 +41,7 @@ constexpr OptionName kOptionNames[] = {
     {"maxLength", "--max-length"},
     {"noiseRamp", "--noise-ramp"},
     {"octaves", "--noise-octaves"},
+    {"order", "--order"},
     {"orientation", "--orientation"},
     {"origin", "--origin"},
     {"outputPattern", "-o"},
@@ -56,6 +60,7 @@ constexpr OptionName kOptionNames[] = {
     {"seeds", "--seeds"},
     {"separation", "--separation"},
     {"gaussBonnet", "--audit-bound"},
+    {"settle", "--settle"},
     {"solver", "--solver"},
     {"space", "--space"},
     {"spatialLevels", "--spatial-first"},

@@ -8,6 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "engine/smooth/adaptive_marks.h"
+#include "engine/smooth/cascade_space.h"
+#include "engine/smooth/critical_factor.h"
 #include "engine/smooth/smooth_checks.h"
 #include "eval/cascade/critical_width.h"
 #include "eval/cascade/enclosed_volume.h"
@@ -25,46 +28,15 @@ using far_ext::CascadeMesh;
 constexpr double kLargestWidth =
     1e6;  // of the mesh's size: anything closed collapses long before, and squares must fit a float
 constexpr int kMaxIterations = 20000;  // of conjugate gradients on a level
+constexpr int kMaxSettling = 30;       // solves
 
-std::vector<double> Times(double factor, std::vector<double> values) {
-    for (double& value : values) value *= factor;
-    return values;
-}
+/// The share of what an adaptive mesh may be off that a triangle's sagitta may have [Cascade 13].
+constexpr double kSagittaShare = 0.4;
 
-/// A length of the scene's size, so that the fourth powers of all others fit a float; a power of
-/// two, which costs no digit.
-double FindUnit(std::vector<double> const& positions) {
-    double size = 0.0;
-    for (size_t i = 3; i < positions.size(); ++i)
-        size = std::max(size, std::abs(positions[i] - positions[i % 3]));
-    return size > 0.0 && std::isfinite(size) ? std::exp2(std::ilogb(size)) : 1.0;
-}
-
-/// Positions as the cascade takes them, which may be in float.
-std::vector<double> ToCascade(std::vector<double> const& positions,
-                              std::array<double, 3> const& origin, double unit) {
-    return Times(1.0 / unit, Subtract(positions, origin));
-}
-
-/// Values of the coarser mesh' vertices, each finer one taking its first parent's.
-std::vector<int> Inherit(CascadeMesh const& mesh, std::vector<int> const& coarse) {
-    std::vector<int> fine(mesh.numVertices);
-    for (size_t vertex = 0; vertex < fine.size(); ++vertex)
-        fine[vertex] = coarse[mesh.parents[mesh.parentOffsets[vertex]]];
-    return fine;
-}
-
-/// Positions of the coarser mesh, interpolated linearly as the cascade does.
-std::vector<double> Interpolate(CascadeMesh const& mesh, std::vector<double> const& coarse) {
-    std::vector<double> fine(size_t{3} * mesh.numVertices, 0.0);
-    far_ext::Points const parents(coarse);
-    far_ext::MutablePoints const points(fine);
-    for (Index vertex = 0; vertex < mesh.numVertices; ++vertex) {
-        int const begin = mesh.parentOffsets[vertex], end = mesh.parentOffsets[vertex + 1];
-        for (int k = begin; k < end; ++k) points[vertex] += parents[mesh.parents[k]];
-        points[vertex] /= end - begin;
-    }
-    return fine;
+/// The width of one step, of a width of 1: what adds up is variances or, in order 4, their squares.
+double GetStepWidth(SmoothOptions const& options) {
+    double const root = std::sqrt(static_cast<double>(options.steps));
+    return 1.0 / (options.order == 4 ? std::sqrt(root) : root);
 }
 
 /// How far the closed component that shrank most did; 1 where none did.
@@ -88,26 +60,30 @@ public:
           _ofVertex(_components.ofVertex),
           _start(model.GetPositions()),
           _levels(model, options.levels, options.refinement, options.keepsCreases),
+          _startMesh(_levels.GetMesh()),
+          _diagonal(FindExtent(model.GetPositions()).GetDiagonal()),
           _unit(FindUnit(model.GetPositions())),
+          _widthUnit(_unit / GetStepWidth(options)),
           _origin(FindFloatOrigin(FindExtent(model.GetPositions()))),
           _cascade(ToCascade(model.GetPositions(), _origin, _unit),
-                   Times(1.0 / _unit, widths.GetStart(model)), MakeCascadeOptions()) {}
+                   Times(1.0 / _widthUnit, widths.GetStart(model)), MakeCascadeOptions()) {}
 
     /// \return without a mesh where a component collapsed
     SmoothResult Run() {
         _report.meanEdge = far_ext::FindMeanEdgeLength(_model.GetLevel(), _model.GetPositions());
         _report.largestWidth = _widths.GetLargest();
-        size_t total = 0;
-        for (int level = 1; level <= _options.levels; ++level) total += GetEffort(level);
+        size_t total = static_cast<size_t>(_options.steps - 1) * GetEffort(_options.levels);
+        for (int level = FirstLevel(); level <= _options.levels; ++level) total += GetEffort(level);
         _job.Start("smooth", total);
-        bool isDone = true;
-        for (_level = 1; isDone && _level <= _options.levels; ++_level) {
-            Step();
-            AdvanceTo(1.0);
-            _shown = 0;
-            _report.hasCollapsed |= GetRadiusRatio(_report) < eval::kLeastRadiusRatio;
-            isDone = !_report.hasCollapsed || _options.onCollapse == OnCollapse::KeepResult;
+        bool isDone = (_options.adaptive ? RunPasses() : RunLevels()) && Settle();
+        for (_step = 2; isDone && _step <= _options.steps; ++_step) {
+            _job.CheckStopped();
+            _cascade.StartHere();
+            _start = Times(_unit, _cascade.GetPositions());
+            AddSolve(_cascade.Repeat(CountIterations()));
+            isDone = Settle();
         }
+        if (_options.adaptive && isDone) DescribeAdaption();
         _job.Finish();
         return {isDone ? std::optional(MakeRoundedScene()) : std::nullopt, std::move(_report)};
     }
@@ -118,12 +94,127 @@ private:
         auto const* const stop = std::get_if<StopAtResidual>(&_options.stop);
         return {.solver = _options.solver,
                 .tolerance = stop ? stop->residual : 0.0,
-                .width = constant ? *constant / _unit : -1.0,
+                .width = constant ? *constant / _widthUnit : -1.0,
                 .isGraph = IsGraph(),
-                .progress = [this](double share) {
-                    _job.CheckStopped();
-                    AdvanceTo(share);
-                }};
+                .progress =
+                    [this](double share) {
+                        _job.CheckStopped();
+                        if (!_isSettling) AdvanceTo(share);
+                    },
+                .order = _options.order,
+                .features = ScaleFeatures(_model, _options, _unit)};
+    }
+
+    int FirstLevel() const { return std::min(1, _options.levels); }
+
+    bool RunLevels() {
+        bool isDone = true;
+        for (int level = FirstLevel(); isDone && level <= _options.levels; ++level) {
+            _level = level;
+            _job.CheckStopped();
+            StepTo(level == 0 ? _levels.MakeUnrefined() : _levels.MakeNext());
+            isDone = MayGoOn();
+        }
+        return isDone;
+    }
+
+    /// Cuts what is bent too much until nothing is. \return as MayGoOn
+    bool RunPasses() {
+        SmoothAdaption& adaption = _report.adaption.emplace();
+        AdaptiveMarks marks = MarkBent();
+        bool isDone = true;
+        do {  // at least one solve, on the start mesh where nothing is to be cut
+            _job.CheckStopped();
+            if (marks.IsAny()) _level = ++adaption.passes;
+            StepTo(_levels.MakeNext(marks.isMarked));
+            isDone = MayGoOn();
+            marks = MarkBent();
+        } while (isDone && marks.IsAny() && adaption.passes < _options.levels);
+        if (isDone && marks.IsAny()) {
+            _job.Warn(fmt::format(
+                "{}: {} passes of bisection leave an error of about {:.2g} of the "
+                "diagonal where {:.2g} is asked for; more `levels`, or a larger "
+                "width, reach it",
+                _model.GetPath(), adaption.passes, EstimateError(marks), *_options.adaptive));
+        }
+        return isDone;
+    }
+
+    AdaptiveMarks MarkBent() {
+        std::vector<double> sigmas;
+        if (_report.levels.empty()) sigmas = _widths.SampleLevel(_levels, _start);
+        if (sigmas.empty()) sigmas = Times(_widthUnit, _cascade.GetWidths());
+        return MarkBentTriangles(_levels.GetMesh(), Times(_unit, _cascade.GetPositions()), sigmas,
+                                 _widths, kSagittaShare * *_options.adaptive * _diagonal);
+    }
+
+    double EstimateError(AdaptiveMarks const& marks) const {
+        return marks.largest > 0.0 ? marks.largest / (kSagittaShare * _diagonal) : 0.0;
+    }
+
+    void DescribeAdaption() {
+        SmoothAdaption& adaption = *_report.adaption;
+        adaption.estimated = EstimateError(MarkBent());
+        adaption.vertices = _levels.GetMesh().numVertices;
+        adaption.smallestEdge =
+            FindShortestEdge(_levels.GetMesh(), Times(_unit, _cascade.GetPositions()));
+        adaption.uniformVertices = CountAfterQuarterings(_startMesh, (adaption.passes + 1) / 2);
+    }
+
+    /// Whether what is left to move is little enough.
+    bool HasSettled() const {
+        std::vector<double> const& moves = _report.settleMoves;
+        if (!_options.adaptive) return moves.back() < *_options.settle;
+        // Moves shrink by about the same factor each time: the rest is a geometric series.
+        double const ratio =
+            moves.size() == 1 ? 0.9 : std::min(0.95, moves.back() / moves[moves.size() - 2]);
+        return moves.back() * ratio / (1.0 - ratio) < *_options.adaptive / 5.0;
+    }
+
+    /// Solves on the last mesh until it hardly moves. \return as MayGoOn
+    bool Settle() {
+        if (!_options.settle && !_options.adaptive) return true;
+        _job.Start("settling");
+        _isSettling = true;
+        bool isDone = true, isSettled = false;
+        for (int solve = 0; isDone && !isSettled && solve < kMaxSettling; ++solve) {
+            _report.settleMoves.push_back(Repeat());
+            isSettled = HasSettled();
+            isDone = MayGoOn();
+        }
+        if (isDone && !isSettled) {
+            _job.Warn(
+                fmt::format("{}: after {} more solves vertices still move by {:.2g} of the "
+                            "bounding box's diagonal",
+                            _model.GetPath(), kMaxSettling, _report.settleMoves.back()));
+        }
+        _isSettling = false;
+        return isDone;
+    }
+
+    /// Solves again with the metric of what came out. \return  the largest move over the diagonal
+    double Repeat() {
+        _job.CheckStopped();
+        auto const before = _cascade.GetPositions();
+        auto const again = _cascade.Repeat(CountIterations());
+        SmoothSolve& solve = _report.levels.back();
+        bool const wasFrozen = solve.isMetricFrozen;
+        int const sweeps = solve.sweeps + again.sweeps;
+        bool const converged = solve.converged && again.converged;
+        static_cast<eval::CascadeStepReport&>(solve) = again;
+        solve.sweeps = sweeps;
+        solve.converged = converged;
+        LookAfter(wasFrozen);
+        double const move = FindLargestMove(before, _cascade.GetPositions());
+        return move > 0.0 ? _unit * move / _diagonal : 0.0;
+    }
+
+    /// Whether the filter is repeated with the metric of its result, which needs a fixed point.
+    bool IsIterated() const { return _options.levels > 0 || _options.settle; }
+
+    bool MayGoOn() {
+        _report.hasCollapsed |= IsIterated() && GetRadiusRatio(_report) < eval::kLeastRadiusRatio;
+        return !_report.hasCollapsed || _options.onCollapse == OnCollapse::KeepResult;
     }
 
     bool IsGraph() const { return _options.constraint == SmoothConstraint::Graph; }
@@ -150,7 +241,7 @@ private:
         for (size_t i = 0; i < fine.positions.size(); ++i) {
             if (_origin[i % 3] != 0.0) fine.positions[i] += _origin[i % 3];  // -0 stays
         }
-        auto const widths = Times(_unit, _cascade.GetWidths());
+        auto const widths = Times(_widthUnit, _cascade.GetWidths());
         std::erase_if(fine.primvars,
                       [](Primvar const& primvar) { return primvar.name == "width"; });
         fine.primvars.push_back({"width", 1, std::vector<float>(widths.begin(), widths.end())});
@@ -186,35 +277,44 @@ private:
         return kMaxIterations;
     }
 
-    void Step() {
-        _job.CheckStopped();
-        CascadeMesh const& mesh = _levels.MakeNext();
+    /// Goes to a finer mesh and solves there.
+    void StepTo(CascadeMesh const& mesh) {
         std::vector<Index> const coarse = std::move(_rows.vertices);
         _rows = far_ext::BuildCascadeLevel(mesh, coarse, _options.boundary);
         _ofVertex = Inherit(mesh, _ofVertex);
         _start = Interpolate(mesh, _start);
         auto const given = _widths.SampleLevel(_levels, _start);
-        if (_level == 1 && !IsGraph() && !_isAgain)
+        if (_report.levels.empty() && IsIterated() && !IsGraph() && !_isAgain)
             WarnOfSharpCorners(_model, _rows, given.empty() ? _widths.GetStart(_model) : given,
                                _job);
         _job.CheckStopped();
+        AddSolve(_cascade.Step(_rows, CountIterations(), Times(1.0 / _widthUnit, given)));
+    }
+
+    void AddSolve(eval::CascadeStepReport const& solve) {
         bool const wasFrozen = !_report.levels.empty() && _report.levels.back().isMetricFrozen;
-        _report.levels.push_back(
-            _cascade.Step(_rows, CountIterations(), Times(1.0 / _unit, given)));
-        auto const& step = _report.levels.back();
+        _report.levels.push_back({solve, _level, _step});
         _job.Note(fmt::format("level {}: {} unknowns, {} sweeps, residual {:.2g}", _level,
-                              step.unknowns, step.sweeps, step.residual));
-        if (step.isMetricFrozen && !wasFrozen) {
+                              solve.unknowns, solve.sweeps, solve.residual));
+        LookAfter(wasFrozen);
+        AdvanceTo(1.0);
+        _shown = 0;
+    }
+
+    /// What is to be kept and told after a solve.
+    void LookAfter(bool wasFrozen) {
+        SmoothSolve const& solve = _report.levels.back();
+        if (solve.isMetricFrozen && !wasFrozen) {
             _job.Warn(
                 fmt::format("{}: from level {} on the filter keeps the metric of the level before: "
                             "its smallest angle would be {:.2g} degrees, its "
                             "smallest area {:.2g} of the mean. A smaller width, or less sharp "
                             "corners, avoid it",
                             _model.GetPath(), _level,
-                            step.minAngleRadians * 180.0 / std::numbers::pi, step.areaRatio));
+                            solve.minAngleRadians * 180.0 / std::numbers::pi, solve.areaRatio));
         }
         if (_options.constraint == SmoothConstraint::Volume)
-            RestoreVolumes(mesh);
+            RestoreVolumes(_levels.GetMesh());
         else if (!IsGraph())
             WatchRadii();
     }
@@ -266,50 +366,17 @@ private:
     std::vector<int> _ofVertex;
     std::vector<double> _start;  // the start surface on the present level
     SmoothLevels _levels;
-    double _unit;                   // of the cascade's lengths
+    CascadeMesh _startMesh;         // of bisection
+    double _diagonal;               // of the start surface
+    double _unit, _widthUnit;       // of the cascade's lengths and, with steps, of its widths
     std::array<double, 3> _origin;  // what its positions are relative to
     CascadeLevel _rows;
     eval::Cascade<Scalar> _cascade;
-    int _level = 0;
+    int _level = 0, _step = 1;
+    bool _isSettling = false;
     size_t _shown = 0;  // of the level's effort
     SmoothReport _report;
 };
-
-constexpr double kMaxVertices = 10000.0;  // of a grid to measure the critical width on
-
-/// Measures what factor on the widths the closed components carry.
-double MeasureCriticalFactor(Model const& model, ScaledWidths const& widths,
-                             SmoothOptions const& options, Job& job) {
-    bool const isBisection = options.refinement == SmoothRefinement::Bisect;
-    int maxLevels = isBisection ? 6 : 3;
-    while (maxLevels > 1 &&
-           model.GetLevel().GetNumVertices() * std::pow(isBisection ? 2.0 : 4.0, maxLevels) >
-               kMaxVertices)
-        --maxLevels;
-    SmoothLevels levels(model, maxLevels, options.refinement, options.keepsCreases);
-    SmoothComponents const components(model.GetLevel());
-    std::vector<int> ofVertex = components.ofVertex;
-    std::vector<double> start = model.GetPositions();
-    std::vector<CascadeLevel> rows;
-    double const unit = FindUnit(start);
-    eval::CascadeWidths scaled;
-    if (auto const constant = widths.GetConstant())
-        scaled.constant = *constant / unit;
-    else
-        scaled.atVertices = Times(1.0 / unit, widths.GetStart(model));
-    for (int level = 1; level <= maxLevels; ++level) {
-        CascadeMesh const& mesh = levels.MakeNext();
-        rows.push_back(far_ext::BuildCascadeLevel(
-            mesh, rows.empty() ? std::vector<Index>{} : rows.back().vertices, options.boundary));
-        ofVertex = Inherit(mesh, ofVertex);
-        start = Interpolate(mesh, start);
-        auto given = widths.SampleLevel(levels, start);
-        if (!given.empty()) scaled.atLevels.push_back(Times(1.0 / unit, std::move(given)));
-    }
-    auto const origin = FindFloatOrigin(FindExtent(model.GetPositions()));
-    return eval::FindCriticalFactor(rows, ToCascade(model.GetPositions(), origin, unit), scaled,
-                                    ofVertex, components.isClosed, [&] { job.CheckStopped(); });
-}
 
 SmoothResult RunOnce(Model const& model, ScaledWidths const& widths, SmoothOptions const& options,
                      bool isAgain, Job& job) {
@@ -319,13 +386,17 @@ SmoothResult RunOnce(Model const& model, ScaledWidths const& widths, SmoothOptio
                     : SmoothRun<double>(model, widths, options, isAgain, job).Run();
 }
 
+/// Options as the run takes them: passes of bisection for levels where these are adaptive.
+SmoothOptions CountPasses(SmoothOptions options) {
+    if (!options.adaptive) return options;
+    options.refinement = SmoothRefinement::Bisect;
+    options.levels *= 2;
+    return options;
+}
+
 void CheckInput(Model const& model, FilterWidths const& widths, SmoothOptions const& options,
                 Job& job) {
-    if (options.solver == eval::CascadeSolver::Jacobi &&
-        std::holds_alternative<StopAtResidual>(options.stop)) {
-        throw Error(ErrorCode::BadOption,
-                    "Jacobi sweeps do not watch the residual; `stop` needs their number");
-    }
+    CheckOptions(options);
     RefuseDefects(model, job);
     CheckWidths(widths, model);
     double const unit = FindUnit(model.GetPositions()),
@@ -337,6 +408,7 @@ void CheckInput(Model const& model, FilterWidths const& widths, SmoothOptions co
                                 model.GetPath(), largest, kLargestWidth, unit));
     }
     if (options.constraint == SmoothConstraint::Graph) RequireGraph(model);
+    if (options.keptFeatures) RequireTriangles(model);
 }
 
 /// Where a component shrank suspiciously, measures what it carries, and limits the width to that
@@ -346,12 +418,14 @@ SmoothResult WatchCollapse(Model const& model, FilterWidths const& widths,
     // A sphere is at 0.72 of its radius where the width is 0.9 of the critical one. On a large mesh
     // it costs too much to be sure.
     constexpr double kSuspiciousRatio = 0.75;
-    double const suspicious = 4.0 * model.GetLevel().GetNumVertices() <= kMaxVertices
+    double const suspicious = 4.0 * model.GetLevel().GetNumVertices() <= kMaxCriticalVertices
                                   ? kSuspiciousRatio
                                   : eval::kLeastRadiusRatio;
-    if (GetRadiusRatio(result.report) >= suspicious) return result;
+    bool const isIterated = options.levels > 0 || options.settle;
+    if (!isIterated || GetRadiusRatio(result.report) >= suspicious) return result;
     job.Start("measuring the critical width");
-    double const factor = MeasureCriticalFactor(model, ScaledWidths(widths, 1.0), options, job);
+    double const factor =
+        MeasureCriticalFactor(model, ScaledWidths(widths, GetStepWidth(options)), options, job);
     result.report.hasCollapsed |= factor < 1.0;
     if (result.report.hasCollapsed && options.onCollapse == OnCollapse::LimitWidth &&
         factor > 0.0) {
@@ -378,9 +452,10 @@ bool SmoothReport::HasConverged() const {
                                         [](auto const& level) { return level.converged; });
 }
 
-SmoothResult Smooth(Model const& model, FilterWidths const& widths, SmoothOptions const& options,
+SmoothResult Smooth(Model const& model, FilterWidths const& widths, SmoothOptions const& asked,
                     Job& job) {
-    CheckInput(model, widths, options, job);
+    CheckInput(model, widths, asked, job);
+    SmoothOptions const options = CountPasses(asked);
     SmoothResult result =
         WatchCollapse(model, widths, options, job,
                       RunOnce(model, ScaledWidths(widths, 1.0), options, false, job));

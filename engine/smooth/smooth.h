@@ -45,8 +45,28 @@ enum class OnCollapse {
     KeepResult   ///< goes on to the last level
 };
 
+/// The width, over the mean edge length, where none is given: below what coarse closed meshes carry
+/// [Cascade 7].
+inline constexpr double kDefaultWidthFactor = 0.12;
+
 struct SmoothOptions {
-    int levels = 2;
+    int levels = 2;  ///< 0: the mesh stays as it is, and is solved on once
+    /// Solves of width sigma / sqrt(steps) each, with metric and right side of the step before. The
+    /// cascade is the first; the others run on its finest mesh.
+    int steps = 1;
+    /// Each step is repeated on the finest mesh, with the metric of what came out, until no vertex
+    /// moves by more than this share of the bounding box's diagonal; 30 times at most.
+    std::optional<double> settle{};
+    /// 2: curvature motion. 4: (M + L M^-1 L) X = M X0, which keeps more of the volume, with a gain
+    /// of 1/2 at the same wave length; without refinement only, steps are of sigma / steps^(1/4).
+    int order = 2;
+    /// Where normals turn by more over a length (1/length), the filter hardly acts; without
+    /// refinement, on triangles only.
+    std::optional<double> keptFeatures{};
+    /// Cuts triangles only where they lie by more than this share of the bounding box's diagonal
+    /// from the surface, about, in up to twice as many passes of bisection as levels; then lets it
+    /// settle to a fifth of that. `refinement` means nothing then.
+    std::optional<double> adaptive{};
     SmoothRefinement refinement = SmoothRefinement::Quadrisect;
     far_ext::BoundaryRule boundary = far_ext::BoundaryRule::Fixed;
     eval::CascadeSolver solver = eval::CascadeSolver::ConjugateGradients;
@@ -60,11 +80,16 @@ struct SmoothOptions {
     std::optional<MeshTarget> target{};
 };
 
-/// The closed component that shrank most.
+/// The closed component that shrank most in a step.
 struct SmoothShrinkage {
     Index firstVertex = 0;     ///< of the component, in the control mesh
     int level = 0;             ///< where it was least
-    double radiusRatio = 1.0;  ///< mean distance from its middle, over that of the start surface
+    double radiusRatio = 1.0;  ///< mean distance from its middle, over that before the step
+};
+
+/// A solve of the cascade or of a later step, with the repetitions that settled it.
+struct SmoothSolve : eval::CascadeStepReport {
+    int level = 0, step = 1;
 };
 
 /// A volume that was to be preserved.
@@ -74,8 +99,19 @@ struct SmoothVolume {
     bool isMet = false;             ///< before it was rounded
 };
 
+/// What became of refining adaptively; errors are over the bounding box's diagonal.
+struct SmoothAdaption {
+    double estimated = 0.0;  ///< error left, about
+    int passes = 0;
+    Index vertices = 0;
+    double smallestEdge = 0.0;
+    double uniformVertices = 0.0;  ///< of quarterings as deep, two passes each
+};
+
 struct SmoothReport {
-    std::vector<eval::CascadeStepReport> levels;
+    std::vector<SmoothSolve> levels;
+    std::vector<double> settleMoves;  ///< per repetition: the largest move over the diagonal
+    std::optional<SmoothAdaption> adaption;
     Precision precision = Precision::Double;  ///< what the mesh's coordinates are rounded to
     double meanEdge = 0.0;                    ///< of the control mesh
     double largestWidth = 0.0;                ///< as used
@@ -101,12 +137,17 @@ struct SmoothResult {
     SmoothReport report;
 };
 
+/// Refuses options that do not go together. \throws Error  BadOption: both named
+void CheckOptions(SmoothOptions const& options);
+
 /// Refines a mesh and smooths it by curvature motion: the cascadic geometric filter.
 ///
 /// Topology  of uniform refinement with the model's scheme, or of bisection; positions start from
 ///           linear interpolation.
 /// Result    an approximation of the filtered surface, with texture coordinates by the model's
 ///           rule.
+/// Fairing   Without refinement faces must be all triangles or all quads. A single solve exists for
+///           every width, so that nothing collapses unless it is to settle.
 /// Collapse  A width above what a closed component carries has no fixed point: it shrinks to
 ///           nothing with the levels. Where one shrank suspiciously, the critical width is measured
 ///           on a grid of 10 000 vertices at most [Cascade 7].
@@ -114,10 +155,11 @@ struct SmoothResult {
 /// \param model   of the scheme Loop where triangles are to stay triangles
 /// \param job     told of progress, and of a metric that was frozen, sharp corners, volumes that
 ///                could not be kept, a precision that was not asked for or loses too much
-/// \throws Error  BadMesh: not manifold or oriented two ways; a width above 1e6 of the mesh's size;
+/// \throws Error  BadMesh: not manifold or oriented two ways; without refinement, other faces; a
+/// width above 1e6 of the mesh's size;
 ///                for graphs, faces that overlap in the plane.  BadOption: a width that is no
 ///                number from 0 up, a residual for Jacobi sweeps, widths for another number of
-///                vertices.  As SmoothLevels
+///                vertices, options that do not go together.  As SmoothLevels
 /// \throws Stopped
 /// Source  [Diewald02] Sec. 5 to 8; [Cascade 2], [Cascade 9]
 SmoothResult Smooth(Model const& model, FilterWidths const& widths, SmoothOptions const& options,

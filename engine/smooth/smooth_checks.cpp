@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/smooth/smooth_checks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <variant>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "engine/scene/defects.h"
+#include "engine/smooth/smooth.h"
 #include "far_ext/error.h"
 #include "far_ext/rows/points.h"
 #include "far_ext/topology/face_components.h"
@@ -66,6 +70,55 @@ void RequireGraph(Model const& model) {
                                     "plane of convex faces",
                                     model.GetPath(), model.NameFace(face)));
         }
+    }
+}
+
+void RequireTriangles(Model const& model) {
+    auto const& sizes = model.GetCage().faceSizes;
+    auto const other = std::find_if(sizes.begin(), sizes.end(), [](int size) { return size != 3; });
+    if (other == sizes.end()) return;
+    throw Error(
+        ErrorCode::BadMesh,
+        fmt::format("{}: {} has {} corners; `keptFeatures` needs triangles", model.GetPath(),
+                    model.NameFace(static_cast<Index>(other - sizes.begin())), *other));
+}
+
+void CheckOptions(SmoothOptions const& options) {
+    bool const isJacobi = options.solver == eval::CascadeSolver::Jacobi;
+    auto const refuse = [](bool isWrong, std::string const& message) {
+        if (isWrong) throw Error(ErrorCode::BadOption, message);
+    };
+    refuse(isJacobi && std::holds_alternative<StopAtResidual>(options.stop),
+           "Jacobi sweeps do not watch the residual; `stop` needs their number");
+    refuse(options.order != 2 && options.order != 4,
+           fmt::format("`order`: {} is neither 2 nor 4", options.order));
+    refuse(options.steps < 1, fmt::format("`steps`: {} is not 1 or more", options.steps));
+    if (options.order == 4) {
+        refuse(options.levels != 0, "`order` 4 needs `levels` 0");
+        refuse(isJacobi, "`order` 4 is not for `solver` jacobi; cg and exact solve it");
+        refuse(options.boundary == far_ext::BoundaryRule::Natural,
+               "`order` 4 does not go with `Natural`: boundaries are fixed");
+        refuse(options.keptFeatures.has_value(), "`order` 4 and `keptFeatures` exclude each other");
+    }
+    if (options.keptFeatures) {
+        refuse(!(*options.keptFeatures > 0.0),
+               fmt::format("`keptFeatures`: {} is not above 0", *options.keptFeatures));
+        refuse(options.levels != 0, "`keptFeatures` needs `levels` 0");
+        refuse(isJacobi, "`keptFeatures` is not for `solver` jacobi; cg and exact solve it");
+        refuse(options.constraint == SmoothConstraint::Graph,
+               "`keptFeatures` and `Graph` exclude each other");
+    }
+    if (options.adaptive) {
+        refuse(!(*options.adaptive > 0.0),
+               fmt::format("`adaptive`: {} is not above 0", *options.adaptive));
+        refuse(options.levels < 1 || options.levels > 10,
+               fmt::format("`levels`: {} is not from 1 to 10 with `adaptive`", options.levels));
+        refuse(isJacobi, "`adaptive` is not for `solver` jacobi; cg and exact solve each pass");
+        refuse(std::holds_alternative<SweepsOnFinest>(options.stop),
+               "`adaptive` and `stop` exclude each other: nobody knows how many levels follow");
+        refuse(options.steps != 1, "`adaptive` and `steps` exclude each other");
+        refuse(options.settle.has_value(),
+               "`adaptive` and `settle` exclude each other: it settles by itself");
     }
 }
 

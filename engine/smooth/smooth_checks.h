@@ -33,6 +33,9 @@ void RefuseDefects(Model const& model, Job& job);
 /// \throws Error  BadMesh: a face that does not (named)
 void RequireGraph(Model const& model);
 
+/// \throws Error  BadMesh: a face (named) that is no triangle
+void RequireTriangles(Model const& model);
+
 /// Warns of corners so sharp that triangles degenerate there with the levels.
 ///
 /// \param first   the first level's rows

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "engine/scene/refine.h"
+#include "engine/scene/scene_checks.h"
 #include "eval/differential/refine_values.h"
 #include "far_ext/error.h"
 #include "far_ext/topology/refined_cage.h"
@@ -58,30 +59,55 @@ far_ext::Bisection StartBisection(Model const& model, bool keepsCreases) {
 
 }  // namespace
 
+Sdc::SchemeType ChooseCascadeScheme(far_ext::ControlMesh const& cage) {
+    bool const areTriangles = std::all_of(cage.faceSizes.begin(), cage.faceSizes.end(),
+                                          [](int size) { return size == 3; });
+    return areTriangles ? Sdc::SCHEME_LOOP : cage.scheme;
+}
+
 SmoothLevels::SmoothLevels(Model const& model, int numLevels, SmoothRefinement refinement,
                            bool keepsCreases)
     : _model(model),
       _keepsCreases(keepsCreases),
       _uvs(model.GetUVs()),
       _primvars(model.GetPrimvars()) {
-    if (refinement == SmoothRefinement::Bisect)
+    if (refinement == SmoothRefinement::Bisect && numLevels > 0) {
         _bisection = StartBisection(model, keepsCreases);
-    else
+        _mesh = _bisection->GetMesh();
+    } else {
         _refiner = MakeUniformRefiner(model.GetCage(), model.GetPath(), numLevels);
+    }
+}
+
+void SmoothLevels::DropTags() {
+    if (_keepsCreases) return;
+    _mesh.creases.clear();
+    _mesh.corners.clear();
+}
+
+far_ext::CascadeMesh const& SmoothLevels::MakeUnrefined() {
+    _mesh = NamingMesh(_model.GetPath(), [&] { return far_ext::MakeCascadeMesh(*_refiner, 0); });
+    DropTags();
+    return _mesh;
 }
 
 far_ext::CascadeMesh const& SmoothLevels::MakeNext() {
     ++_level;
-    if (_refiner) {
-        _mesh = far_ext::MakeCascadeMesh(*_refiner, _level);
-        if (!_keepsCreases) {
-            _mesh.creases.clear();
-            _mesh.corners.clear();
-        }
-        return _mesh;
-    }
-    Index const numCoarse = _level == 1 ? _model.GetCage().numVertices : _mesh.numVertices;
-    _mesh = _bisection->Refine();
+    if (_bisection) return TakeBisected(_bisection->Refine());
+    _mesh = far_ext::MakeCascadeMesh(*_refiner, _level);
+    DropTags();
+    return _mesh;
+}
+
+far_ext::CascadeMesh const& SmoothLevels::MakeNext(std::span<char const> isMarked) {
+    ++_level;
+    return TakeBisected(_bisection->Refine(isMarked));
+}
+
+/// Carries primvars and texture coordinates along.
+far_ext::CascadeMesh const& SmoothLevels::TakeBisected(far_ext::CascadeMesh const& fine) {
+    Index const numCoarse = _mesh.numVertices;
+    _mesh = fine;
     std::vector<std::array<Index, 2>> parents;
     for (Index vertex = numCoarse; vertex < _mesh.numVertices; ++vertex) {
         Index const* const own = &_mesh.parents[static_cast<size_t>(_mesh.parentOffsets[vertex])];

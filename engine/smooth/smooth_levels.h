@@ -17,6 +17,10 @@ namespace limn::engine {
 
 enum class SmoothRefinement { Quadrisect, Bisect };
 
+/// The scheme to refine by where none is asked for: triangles stay triangles and all else becomes
+/// quads, since the filter has no subdivision rule.
+Sdc::SchemeType ChooseCascadeScheme(far_ext::ControlMesh const& cage);
+
 /// A cascade's meshes, made level after level, with what hangs on their faces and corners.
 class SmoothLevels {
 public:
@@ -27,10 +31,18 @@ public:
     ///                      RefineUniformly
     SmoothLevels(Model const& model, int numLevels, SmoothRefinement refinement, bool keepsCreases);
 
+    /// The model's own mesh as a level, for a filter without refinement.
+    ///
+    /// \throws Error  BadMesh: faces that are not all triangles or all quads
+    far_ext::CascadeMesh const& MakeUnrefined();
+
     /// Makes the next level's mesh. \return it, until the next call
     far_ext::CascadeMesh const& MakeNext();
 
-    /// The mesh made last; before that none.
+    /// The same by a bisection of marked triangles only, see far_ext::Bisection.
+    far_ext::CascadeMesh const& MakeNext(std::span<char const> isMarked);
+
+    /// The mesh made last; before that the model's own where it is to be bisected, otherwise none.
     far_ext::CascadeMesh const& GetMesh() const { return _mesh; }
 
     /// Per face of the mesh made last: the face of the model it lies in.
@@ -45,6 +57,8 @@ public:
     Scene MakeScene(Job& job) const;
 
 private:
+    void DropTags();
+    far_ext::CascadeMesh const& TakeBisected(far_ext::CascadeMesh const& fine);
     Scene MakeBisectedScene() const;
 
     Model const& _model;

@@ -2,6 +2,7 @@
 #include "engine/smooth/widths.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -47,6 +48,13 @@ double ScaledWidths::GetLargest() const {
         double operator()(PaintedWidths const& widths) const { return widths.GetLargest(); }
     };
     return _factor * std::visit(Largest{}, _widths);
+}
+
+double ScaledWidths::GetResolvedLength() const {
+    // Widths near an edge reach three of them to both sides.
+    if (std::holds_alternative<EdgeWidths>(_widths)) return 6.0 * GetLargest();
+    if (std::holds_alternative<PaintedWidths>(_widths)) return GetLargest();
+    return std::numeric_limits<double>::infinity();
 }
 
 std::optional<double> ScaledWidths::GetConstant() const {

@@ -33,6 +33,9 @@ public:
 
     double GetLargest() const;
 
+    /// Along edges that are no longer, widths are known from those at the ends.
+    double GetResolvedLength() const;
+
     /// The width where it is the same everywhere.
     std::optional<double> GetConstant() const;
 

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "eval/cascade/cascade_solve.h"
+#include "eval/cascade/feature_filter.h"
 #include "eval/parallel/rows.h"
 #include "far_ext/error.h"
 #include "far_ext/rows/points.h"
@@ -92,6 +92,10 @@ Cascade<Scalar>::Cascade(std::span<double const> positions, std::span<double con
         throw Error(ErrorCode::BadOption,
                     "Cascade: in single precision only Jacobi sweeps are done");
     }
+    if (options.solver == CascadeSolver::Jacobi && (options.order != 2 || options.features)) {
+        throw Error(ErrorCode::BadOption,
+                    "Cascade: Jacobi sweeps are of order 2 and keep no features");
+    }
     CheckLengths<Scalar>(positions, "a coordinate");
     CheckLengths<Scalar>(isLocal ? widths : std::span(&options.width, 1), "a width");
     for (size_t i = 0; i < positions.size() / 3; ++i) {
@@ -169,6 +173,7 @@ CascadeStepReport Cascade<Scalar>::Solve(int iterations) {
         for (size_t row = 0; row < _x.size(); ++row) _metric[row][3] = _x[row][3];
         BuildOperator(level, _metric, width, _operator);
     }
+    BuildEquation(_isFrozen ? _metric : present, iterations);
 
     if (_options.solver == CascadeSolver::Jacobi) {
         Sweep(iterations);
@@ -179,18 +184,42 @@ CascadeStepReport Cascade<Scalar>::Solve(int iterations) {
     }
     if (!_isFrozen) _metric = present;
     ReturnUnmovedRows(level, _operator, _x0, _x);
-    if constexpr (std::is_same_v<Scalar, double>) {
-        CascadeSolve const solve =
-            _options.solver == CascadeSolver::Exact
-                ? SolveByCholesky(level, _operator, _x0, _x)
-                : SolveByConjugateGradients(level, _operator, _x0, _x, iterations,
-                                            _options.tolerance, _options.progress);
-        report.sweeps = solve.iterations;
-        report.residual = solve.residual;
-        report.converged =
-            solve.converged || _options.tolerance == 0.0;  // a count was asked for, and done
-    }
+    CascadeSolve const solve = SolveRows(_operator, _x0, _x, iterations);
+    report.sweeps = solve.iterations;
+    report.residual = solve.residual;
+    report.converged =
+        solve.converged || _options.tolerance == 0.0;  // a count was asked for, and done
     return report;
+}
+
+/// From the plain operator of a metric to the one that is asked for.
+template <class Scalar>
+void Cascade<Scalar>::BuildEquation(CascadeRows<Scalar> const& metric, int iterations) {
+    _operator.order = _options.order;
+    if (!_options.features) return;
+    if constexpr (std::is_same_v<Scalar, double>) {
+        auto const& [lambda, normalsWidth] = *_options.features;
+        CascadeOperator<double> plain;
+        BuildOperator(*_level, metric, normalsWidth, plain);
+        CascadeRows<double> smooth = metric;
+        SolveRows(plain, metric, smooth, iterations);
+        KeepFeatures(*_level, metric, FindRowNormals(*_level, smooth), _options.width, lambda,
+                     _operator);
+    }
+}
+
+/// By one of the solvers that are no sweeps; in single precision there is none.
+template <class Scalar>
+CascadeSolve Cascade<Scalar>::SolveRows(CascadeOperator<Scalar> const& op,
+                                        CascadeRows<Scalar> const& x0, CascadeRows<Scalar>& x,
+                                        int iterations) const {
+    if constexpr (std::is_same_v<Scalar, double>) {
+        return _options.solver == CascadeSolver::Exact
+                   ? SolveByCholesky(*_level, op, x0, x)
+                   : SolveByConjugateGradients(*_level, op, x0, x, iterations, _options.tolerance,
+                                               _options.progress);
+    }
+    return {};
 }
 
 template <class Scalar>
@@ -280,12 +309,8 @@ std::vector<double> Cascade<Scalar>::Filter(std::span<double const> values, int 
     if (_options.solver == CascadeSolver::Jacobi) {
         CascadeRows<Scalar> next = y0;
         SweepInParts(y0, y0, next, y, iterations);
-    } else if constexpr (std::is_same_v<Scalar, double>) {
-        if (_options.solver == CascadeSolver::Exact)
-            SolveByCholesky(*_level, _operator, y0, y);
-        else
-            SolveByConjugateGradients(*_level, _operator, y0, y, iterations, _options.tolerance,
-                                      _options.progress);
+    } else {
+        SolveRows(_operator, y0, y, iterations);
     }
     return GetPublic(y);
 }

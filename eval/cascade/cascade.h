@@ -2,15 +2,23 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "eval/cascade/cascade_operator.h"
+#include "eval/cascade/cascade_solve.h"
 #include "eval/cascade/cascade_sweep.h"
 
 namespace limn::eval {
 
 enum class CascadeSolver { Exact, ConjugateGradients, Jacobi };
+
+/// A filter that keeps features, see eval::KeepFeatures.
+struct KeptFeatures {
+    double lambda = 0.0;        ///< in 1/length: where normals turn by more over a length, it stops
+    double normalsWidth = 0.0;  ///< of the plain step whose result has the normals
+};
 
 struct CascadeOptions {
     CascadeSolver solver = CascadeSolver::ConjugateGradients;
@@ -21,6 +29,8 @@ struct CascadeOptions {
     std::function<void(double)> progress{};  ///< called now and then, but for Exact, with the share
                                              ///< of a solve that is done; may throw
     bool measuresResidual = true;            ///< of Jacobi sweeps, at the cost of about one
+    int order = 2;  ///< 4: (M + L M^-1 L) X = M X0, with L X = 0 on rows that stay; not by Jacobi
+    std::optional<KeptFeatures> features{};  ///< on triangles, not by Jacobi
 };
 
 /// What a step did.
@@ -65,6 +75,10 @@ public:
     /// Solves once more on the same level, with the metric of the present surface.
     CascadeStepReport Repeat(int iterations);
 
+    /// Takes the present surface and widths for the start of what follows: another step of the
+    /// filter, not another level of the same one.
+    void StartHere() { _x0 = _x; }
+
     /// Per vertex of the level, in the public order.
     std::vector<double> GetPositions() const;
     std::vector<double> GetStartPositions() const;
@@ -87,6 +101,9 @@ public:
 
 private:
     CascadeStepReport Solve(int iterations);
+    void BuildEquation(CascadeRows<Scalar> const& metric, int iterations);
+    CascadeSolve SolveRows(CascadeOperator<Scalar> const& op, CascadeRows<Scalar> const& x0,
+                           CascadeRows<Scalar>& x, int iterations) const;
     void Sweep(int iterations);
     void SweepInParts(CascadeRows<Scalar> const& from, CascadeRows<Scalar> const& x0,
                       CascadeRows<Scalar>& next, CascadeRows<Scalar>& x, int iterations) const;

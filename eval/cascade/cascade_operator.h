@@ -41,6 +41,7 @@ struct CascadeOperator {
     far_ext::LargeArray<Scalar> masses;  ///< M_ii, per unknown
     far_ext::LargeArray<Scalar>
         diagonals;  ///< M_ii + L_ii, per unknown; 0 where nothing moves a row: X = X0 there
+    int order = 2;  ///< 2: solvers take M + L, 4: M + L M^-1 L, with L X = 0 on rows that stay
 };
 
 /// The level's rings as kernels take them.

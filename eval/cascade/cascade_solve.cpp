@@ -52,15 +52,120 @@ Row MeasureData(CascadeLevel const& level, CascadeOperator<Scalar> const& op,
     });
 }
 
-/// Conjugate gradients for the rows from begin to end; all others keep their values.
+/// The rows from begin to end and what is known of their equation. All others keep their values.
+struct EquationRows {
+    CascadeLevel const& level;
+    Operator const& op;
+    CascadeRows<double> const& x0;
+    Index begin, end;
+
+    size_t At(Index row) const { return row - begin; }
+    bool Contains(Index row) const { return row >= begin && row < end; }
+    bool IsMoved(Index row) const { return op.diagonals[row] > 0.0; }
+
+    template <class Term>
+    Row Sum(Term const& term) const {
+        return SumRows(end - begin, [&](Index i) -> Row { return term(begin + i); });
+    }
+};
+
+/// (M + L) X = M X0.
+class SecondOrder : public EquationRows {
+public:
+    explicit SecondOrder(EquationRows const& rows) : EquationRows(rows) {}
+
+    void PrepareResidual(CascadeRows<double> const&) {}
+    Row GetResidual(CascadeRows<double> const& x, Index row) const {
+        return FindResidual(level, op, x.data(), x0.data(), row);
+    }
+
+    void PrepareImage(CascadeRows<double> const&) {}
+    /// Of a direction, which is 0 at all rows but begin to end.
+    Row GetImage(CascadeRows<double> const& direction, Index row) const {
+        Row sum = op.diagonals[row] * direction[At(row)];
+        if (op.diagonals[row] == 0.0) return sum;
+        for (int k = level.offsets[row]; k < level.offsets[row + 1]; ++k) {
+            Index const other = level.neighbours[k];
+            if (Contains(other)) sum -= op.edges[k] * direction[At(other)];
+        }
+        return sum;
+    }
+    double GetDiagonal(Index row) const { return op.diagonals[row]; }
+};
+
+/// (M + L M^-1 L) X = M X0, where M^-1 L X is 0 at all rows but those that it moves.
+class FourthOrder : public EquationRows {
+public:
+    explicit FourthOrder(EquationRows const& rows)
+        : EquationRows(rows), _bend(end - begin, Row::Zero()), _diagonals(end - begin, 0.0) {
+        ForEachRow(end - begin, [&](Index i) { _diagonals[i] = FindDiagonal(begin + i); });
+    }
+
+    void PrepareResidual(CascadeRows<double> const& x) {
+        FillBend([&](Index other) -> Row { return x[other]; });
+    }
+    Row GetResidual(CascadeRows<double> const& x, Index row) const {
+        return op.masses[row] * (x0[row] - x[row]) - ApplyToBend(row);
+    }
+
+    void PrepareImage(CascadeRows<double> const& direction) {
+        FillBend([&](Index other) -> Row {
+            return Contains(other) ? direction[At(other)] : Row(Row::Zero());
+        });
+    }
+    Row GetImage(CascadeRows<double> const& direction, Index row) const {
+        return op.masses[row] * direction[At(row)] + ApplyToBend(row);
+    }
+    double GetDiagonal(Index row) const { return _diagonals[At(row)]; }
+
+private:
+    double FindDiagonal(Index row) const {
+        if (!IsMoved(row)) return 0.0;
+        double const own = op.diagonals[row] - op.masses[row];
+        double sum = op.masses[row] + own * own / op.masses[row];
+        for (int k = level.offsets[row]; k < level.offsets[row + 1]; ++k) {
+            Index const other = level.neighbours[k];
+            if (Contains(other) && IsMoved(other))
+                sum += op.edges[k] * op.edges[k] / op.masses[other];
+        }
+        return sum;
+    }
+
+    /// L of a row applied to values, in differences, which cancel less.
+    template <class GetValue>
+    Row Apply(Index row, GetValue const& get) const {
+        Row const own = get(row);
+        Row sum = Row::Zero();
+        for (int k = level.offsets[row]; k < level.offsets[row + 1]; ++k)
+            sum += op.edges[k] * (own - get(level.neighbours[k]));
+        return sum;
+    }
+
+    template <class GetValue>
+    void FillBend(GetValue const& get) {
+        ForEachRow(end - begin, [&](Index i) {
+            Index const row = begin + i;
+            _bend[i] = IsMoved(row) ? Row(Apply(row, get) / op.masses[row]) : Row(Row::Zero());
+        });
+    }
+    Row ApplyToBend(Index row) const {
+        return Apply(row, [&](Index other) -> Row {
+            return Contains(other) ? _bend[At(other)] : Row(Row::Zero());
+        });
+    }
+
+    CascadeRows<double> _bend;  // M^-1 L of what was prepared
+    far_ext::LargeArray<double> _diagonals;
+};
+
+/// Conjugate gradients for the rows of an equation.
+template <class Equation>
 class ConjugateGradientRows {
 public:
-    ConjugateGradientRows(CascadeLevel const& level, Operator const& op,
-                          CascadeRows<double> const& x0, CascadeRows<double>& x, Index begin,
-                          Index end)
-        : _level(level), _op(op), _x0(x0), _x(x), _begin(begin), _end(end) {
-        size_t const count = end - begin;
-        for (auto* rows : {&_residual, &_direction, &_image}) rows->assign(count, Row::Zero());
+    ConjugateGradientRows(EquationRows const& rows, CascadeRows<double>& x)
+        : _equation(rows), _x(x) {
+        size_t const count = rows.end - rows.begin;
+        for (auto* values : {&_residual, &_direction, &_image}) values->assign(count, Row::Zero());
     }
 
     CascadeSolve Run(Row const& data, int maxIterations, double tolerance,
@@ -69,11 +174,7 @@ public:
         double first = 0.0;
         _isPreconditioned = tolerance > 0.0;
         Row energy = Row::Zero();
-        Row squares = Sum([&](Index row) {
-            _residual[At(row)] =
-                FindResidual(_level, _op, _x.data(), _x0.data(), row) * IsMoved(row);
-            return _residual[At(row)].square();
-        });
+        Row squares = FindResiduals();
         while (true) {
             result.residual = FindRelativeSize(squares, data);
             result.converged = result.residual <= tolerance;
@@ -91,89 +192,128 @@ public:
             Row const before = energy;
             energy = Sum([&](Index row) { return _residual[At(row)].square() * GetInverse(row); });
             Row const momentum = Divide(energy, before);
-            ForEachRow(_end - _begin, [&](Index i) {
-                _direction[i] = _residual[i] * GetInverse(_begin + i) + momentum * _direction[i];
+            ForEachRow(static_cast<Index>(_direction.size()), [&](Index i) {
+                _direction[i] =
+                    _residual[i] * GetInverse(_equation.begin + i) + momentum * _direction[i];
             });
-            Row const curvature = Sum([&](Index row) {
-                _image[At(row)] = Apply(row);
-                return _image[At(row)] * _direction[At(row)];
-            });
-            Row const step = Divide(energy, curvature);
-            squares = Sum([&](Index row) {
-                _x[row] += step * _direction[At(row)];
-                _residual[At(row)] -= step * _image[At(row)];
-                return _residual[At(row)].square();
-            });
+            squares = TakeStep(energy);
             ++result.iterations;
         }
     }
 
 private:
-    size_t At(Index row) const { return row - _begin; }
-    double IsMoved(Index row) const { return _op.diagonals[row] > 0.0 ? 1.0 : 0.0; }
+    size_t At(Index row) const { return _equation.At(row); }
     double GetInverse(Index row) const {
-        return !_isPreconditioned         ? IsMoved(row)
-               : _op.diagonals[row] > 0.0 ? 1.0 / _op.diagonals[row]
-                                          : 0.0;
+        if (!_equation.IsMoved(row)) return 0.0;
+        return _isPreconditioned ? 1.0 / _equation.GetDiagonal(row) : 1.0;
     }
 
     template <class Term>
     Row Sum(Term const& term) const {
-        return SumRows(_end - _begin, [&](Index i) -> Row { return term(_begin + i); });
+        return _equation.Sum(term);
     }
 
-    Row Apply(Index row) const {
-        Row sum = _op.diagonals[row] * _direction[At(row)];
-        if (_op.diagonals[row] == 0.0) return sum;
-        for (int k = _level.offsets[row]; k < _level.offsets[row + 1]; ++k) {
-            Index const other = _level.neighbours[k];
-            if (other >= _begin && other < _end) sum -= _op.edges[k] * _direction[At(other)];
-        }
-        return sum;
+    /// \return  the sum of their squares
+    Row FindResiduals() {
+        _equation.PrepareResidual(_x);
+        return Sum([&](Index row) {
+            _residual[At(row)] =
+                _equation.GetResidual(_x, row) * (_equation.IsMoved(row) ? 1.0 : 0.0);
+            return _residual[At(row)].square();
+        });
     }
 
-    CascadeLevel const& _level;
-    Operator const& _op;
-    CascadeRows<double> const& _x0;
+    /// \return  as FindResiduals
+    Row TakeStep(Row const& energy) {
+        _equation.PrepareImage(_direction);
+        Row const curvature = Sum([&](Index row) {
+            _image[At(row)] = _equation.GetImage(_direction, row);
+            return _image[At(row)] * _direction[At(row)];
+        });
+        Row const step = Divide(energy, curvature);
+        return Sum([&](Index row) {
+            _x[row] += step * _direction[At(row)];
+            _residual[At(row)] -= step * _image[At(row)];
+            return _residual[At(row)].square();
+        });
+    }
+
+    Equation _equation;
     CascadeRows<double>& _x;
-    Index _begin, _end;
     bool _isPreconditioned = true;
     CascadeRows<double> _residual, _direction,
         _image;  // directions of rows that nothing moves stay 0
 };
 
-void SolveRowsByCholesky(CascadeLevel const& level, Operator const& op,
-                         CascadeRows<double> const& x0, CascadeRows<double>& x, Index begin,
-                         Index end) {
-    if (begin == end) return;
-    std::vector<Eigen::Triplet<double>> entries;
-    Eigen::MatrixXd rightSide = Eigen::MatrixXd::Zero(end - begin, 4);
-    for (Index row = begin; row < end; ++row) {
-        bool const isMoved = op.diagonals[row] > 0.0;
-        Index const i = row - begin;
-        entries.emplace_back(i, i, isMoved ? op.diagonals[row] : 1.0);
-        rightSide.row(i) = (isMoved ? Row(op.masses[row] * x0[row]) : x[row]).matrix().transpose();
-        if (!isMoved) continue;
-        for (int k = level.offsets[row]; k < level.offsets[row + 1]; ++k) {
-            Index const other = level.neighbours[k];
-            bool const isUnknown = other >= begin && other < end && op.diagonals[other] > 0.0;
-            if (isUnknown)
-                entries.emplace_back(i, other - begin, -op.edges[k]);
-            else
-                rightSide.row(i) += (op.edges[k] * x[other]).matrix().transpose();
+/// Squares of what an equation of order 4 leaves.
+Row SumResiduals(EquationRows const& rows, CascadeRows<double> const& x) {
+    FourthOrder equation(rows);
+    equation.PrepareResidual(x);
+    return rows.Sum([&](Index row) {
+        return rows.IsMoved(row) ? Row(equation.GetResidual(x, row).square()) : Row(Row::Zero());
+    });
+}
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+/// An equation as a matrix; 1 on the diagonal where nothing moves a row.
+struct SparseEquation {
+    SparseMatrix matrix;
+    Eigen::MatrixXd rightSide;
+
+    SparseEquation(EquationRows const& rows, CascadeRows<double> const& x)
+        : matrix(rows.end - rows.begin, rows.end - rows.begin), rightSide(matrix.rows(), 4) {
+        bool const isSecond = rows.op.order == 2;
+        std::vector<Eigen::Triplet<double>> entries;
+        Eigen::VectorXd masses = Eigen::VectorXd::Ones(matrix.rows());
+        for (Index row = rows.begin; row < rows.end; ++row) {
+            bool const isMoved = rows.IsMoved(row);
+            Index const i = row - rows.begin;
+            entries.emplace_back(i, i, isMoved ? rows.op.diagonals[row] : 1.0);
+            Row const data = isMoved ? Row(rows.op.masses[row] * rows.x0[row]) : x[row];
+            rightSide.row(i) = (isSecond ? data : Row(Row::Zero())).matrix().transpose();
+            if (!isMoved) continue;
+            masses[i] = rows.op.masses[row];
+            for (int k = rows.level.offsets[row]; k < rows.level.offsets[row + 1]; ++k) {
+                Index const other = rows.level.neighbours[k];
+                if (rows.Contains(other) && rows.IsMoved(other))
+                    entries.emplace_back(i, other - rows.begin, -rows.op.edges[k]);
+                else
+                    rightSide.row(i) += (rows.op.edges[k] * x[other]).matrix().transpose();
+            }
+        }
+        matrix.setFromTriplets(entries.begin(), entries.end());
+        if (!isSecond) Square(rows, x, masses);
+    }
+
+private:
+    /// From M + L, and minus L of what is given, to the equation of order 4.
+    void Square(EquationRows const& rows, CascadeRows<double> const& x,
+                Eigen::VectorXd const& masses) {
+        SparseMatrix const M(masses.asDiagonal()), L = matrix - M;
+        SparseMatrix const bend = L * masses.cwiseInverse().asDiagonal();
+        matrix = M + SparseMatrix(bend * L);
+        rightSide = (bend * rightSide).eval();
+        for (Index row = rows.begin; row < rows.end; ++row) {
+            Row const data = rows.IsMoved(row) ? rows.x0[row] : x[row];
+            Index const i = row - rows.begin;
+            rightSide.row(i) += masses[i] * data.matrix().transpose();
         }
     }
-    Eigen::SparseMatrix<double> matrix(end - begin, end - begin);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> const cholesky(matrix);
+};
+
+void SolveRowsByCholesky(EquationRows const& rows, CascadeRows<double>& x) {
+    if (rows.begin == rows.end) return;
+    SparseEquation const equation(rows, x);
+    Eigen::SimplicialLDLT<SparseMatrix> const cholesky(equation.matrix);
     if (cholesky.info() != Eigen::Success) {
         throw Error(
             ErrorCode::BadMesh,
             "the filter's equation cannot be factorised; `solver` cg needs no factorisation");
     }
-    Eigen::MatrixXd const solution = cholesky.solve(rightSide);
-    for (Index row = begin; row < end; ++row) {
-        if (op.diagonals[row] > 0.0) x[row] = solution.row(row - begin).transpose().array();
+    Eigen::MatrixXd const solution = cholesky.solve(equation.rightSide);
+    for (Index row = rows.begin; row < rows.end; ++row) {
+        if (rows.IsMoved(row)) x[row] = solution.row(row - rows.begin).transpose().array();
     }
 }
 
@@ -203,8 +343,12 @@ CascadeSolve SolveByConjugateGradients(CascadeLevel const& level, Operator const
                              ? std::sqrt(0.5)
                              : 1.0;  // so that both together keep it
     auto const run = [&](Index begin, Index end) {
-        return ConjugateGradientRows(level, op, x0, x, begin, end)
-            .Run(data, maxIterations, share * tolerance, progress);
+        EquationRows const rows{level, op, x0, begin, end};
+        auto const solve = [&]<class Equation>(ConjugateGradientRows<Equation> gradients) {
+            return gradients.Run(data, maxIterations, share * tolerance, progress);
+        };
+        return op.order == 4 ? solve(ConjugateGradientRows<FourthOrder>(rows, x))
+                             : solve(ConjugateGradientRows<SecondOrder>(rows, x));
     };
     CascadeSolve const creases = run(level.numSurface, level.numUnknowns),
                        surface = run(0, level.numSurface);
@@ -214,9 +358,13 @@ CascadeSolve SolveByConjugateGradients(CascadeLevel const& level, Operator const
 
 CascadeSolve SolveByCholesky(CascadeLevel const& level, Operator const& op,
                              CascadeRows<double> const& x0, CascadeRows<double>& x) {
-    SolveRowsByCholesky(level, op, x0, x, level.numSurface, level.numUnknowns);
-    SolveRowsByCholesky(level, op, x0, x, 0, level.numSurface);
-    return {1, MeasureResidual(level, op, x, x0), true};
+    EquationRows const creases{level, op, x0, level.numSurface, level.numUnknowns},
+        surface{level, op, x0, 0, level.numSurface};
+    SolveRowsByCholesky(creases, x);
+    SolveRowsByCholesky(surface, x);
+    if (op.order == 2) return {1, MeasureResidual(level, op, x, x0), true};
+    Row const squares = SumResiduals(creases, x) + SumResiduals(surface, x);
+    return {1, FindRelativeSize(squares, MeasureData(level, op, x0)), true};
 }
 
 }  // namespace limn::eval

@@ -10,18 +10,18 @@ namespace limn::eval {
 /// What became of solving a level.
 struct CascadeSolve {
     int iterations = 0;
-    double residual = 0.0;  ///< |M (X0 - X) - L X| / |M (X0 - centroid)|: of positions, or of
-                            ///< widths if that is more
+    double residual = 0.0;  ///< |M (X0 - X) - L X|, or with L M^-1 L for L, over |M (X0 -
+                            ///< centroid)|: of positions, or of widths if that is more
     bool converged = true;
 };
 
-/// |M (X0 - X) - L X| / |M (X0 - centroid)| over all unknowns.
+/// |M (X0 - X) - L X| / |M (X0 - centroid)| over all unknowns, of an operator of order 2.
 template <class Scalar>
 double MeasureResidual(far_ext::CascadeLevel const& level, CascadeOperator<Scalar> const& op,
                        CascadeRows<Scalar> const& x, CascadeRows<Scalar> const& x0);
 
-/// Solves (M + L) X = M X0 by conjugate gradients, each coordinate with steps of its own. Rows on
-/// creases first: surface rows see them as given.
+/// Solves (M + L) X = M X0, or (M + L M^-1 L) X = M X0, by conjugate gradients, each coordinate
+/// with steps of its own. Rows on creases first: surface rows see them as given.
 ///
 /// \param tolerance      of the residual. Above 0 the diagonal is the preconditioner; at 0 all
 ///                       iterations are done without one, as the a-priori counts of [Diewald02] are

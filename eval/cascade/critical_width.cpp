@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "eval/cascade/cascade.h"
-
 namespace limn::eval {
 
 namespace {
@@ -49,12 +47,14 @@ std::vector<double> FindMeanRadii(std::span<double const> positions,
 double FindCriticalFactor(std::span<far_ext::CascadeLevel const> levels,
                           std::span<double const> positions, CascadeWidths const& widths,
                           std::span<int const> componentOfVertex, std::span<char const> isWanted,
-                          std::function<void()> const& check) {
+                          CascadeOptions const& filter, std::function<void()> const& check) {
     int const numComponents = static_cast<int>(isWanted.size());
     auto const carries = [&](double factor) {
         CascadeOptions const options{
             .tolerance = kTolerance,
-            .width = widths.constant < 0.0 ? -1.0 : factor * widths.constant};
+            .width = widths.constant < 0.0 ? -1.0 : factor * widths.constant,
+            .order = filter.order,
+            .features = filter.features};
         Cascade<double> cascade(
             positions,
             widths.constant < 0.0 ? Scale(widths.atVertices, factor) : std::vector<double>{},

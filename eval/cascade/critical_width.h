@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "far_ext/cascade/cascade_level.h"
+#include "eval/cascade/cascade.h"
 
 namespace limn::eval {
 
@@ -31,11 +31,12 @@ struct CascadeWidths {
 ///
 /// \param componentOfVertex  per vertex of the last level
 /// \param isWanted           per component
+/// \param filter             order and features of the filter
 /// \param check              called between steps; may throw
 /// Source  [Diewald02] Sec. 6; [Cascade 7]
 double FindCriticalFactor(std::span<far_ext::CascadeLevel const> levels,
                           std::span<double const> positions, CascadeWidths const& widths,
                           std::span<int const> componentOfVertex, std::span<char const> isWanted,
-                          std::function<void()> const& check);
+                          CascadeOptions const& filter, std::function<void()> const& check);
 
 }  // namespace limn::eval

@@ -2,36 +2,15 @@
 #include "far_ext/cascade/bisection.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <numeric>
-#include <unordered_map>
 #include <utility>
 
+#include "far_ext/cascade/edge_numbers.h"
 #include "far_ext/rows/points.h"
 
 namespace limn::far_ext {
 
 namespace {
-
-/// Edges of triangles, numbered by first appearance.
-class EdgeNumbers {
-public:
-    Index Get(Index a, Index b) {
-        return _numbers.try_emplace(Key(a, b), static_cast<Index>(_numbers.size())).first->second;
-    }
-    Index Find(Index a, Index b) const {
-        auto const found = _numbers.find(Key(a, b));
-        return found == _numbers.end() ? -1 : found->second;
-    }
-    size_t GetCount() const { return _numbers.size(); }
-
-private:
-    static std::uint64_t Key(Index a, Index b) {
-        return static_cast<std::uint64_t>(std::min(a, b)) << 32 |
-               static_cast<std::uint64_t>(std::max(a, b));
-    }
-    std::unordered_map<std::uint64_t, Index> _numbers;
-};
 
 int FindLongestEdge(Index const* face, Points points) {
     int longest = 0;
@@ -60,7 +39,8 @@ struct CutCorner {
 struct Bisection::CutEdges {
     EdgeNumbers numbers;
     std::vector<std::array<Index, 2>> ends;
-    std::vector<Index> middles;  // per edge: its new vertex, or -1
+    std::vector<Index> ofCorner;  // per corner: the edge to the next one
+    std::vector<Index> middles;   // per edge: its new vertex, or -1
 
     Index FindMiddle(Index a, Index b) const {
         Index const edge = numbers.Find(a, b);
@@ -76,7 +56,7 @@ struct Bisection::Halves {
     std::vector<Index>* fvarValues;  // null without a channel
     Index numFVarValues;
     std::vector<std::array<Index, 2>>& fvarParents;
-    EdgeNumbers fvarEdges{};  // that are cut
+    EdgeNumbers fvarEdges;  // that are cut
 
     /// Cuts a triangle whose refinement edge is (face[0], face[1]), and its halves. New triangles
     /// have their refinement edge, opposite the newest vertex, first as well.
@@ -120,24 +100,45 @@ void Bisection::SetFVarChannel(Index numValues, std::vector<Index> values) {
     _fvarValues = std::move(values);
 }
 
-/// Numbers the edges of the mesh; the refinement edges are to be cut.
-Bisection::CutEdges Bisection::FindCutEdges() const {
+/// Per edge whether it is cut: the refinement edges of marked triangles, and of all that have a cut
+/// edge.
+std::vector<char> Bisection::CloseCuts(CutEdges const& edges,
+                                       std::span<char const> isMarked) const {
+    std::vector<char> isCut(edges.ends.size(), 0);
+    auto const getRefinementEdge = [&](size_t face) {
+        return edges.ofCorner[3 * face + static_cast<size_t>(_refinementEdges[face])];
+    };
+    for (size_t face = 0; face < _refinementEdges.size(); ++face) {
+        if (isMarked[face]) isCut[getRefinementEdge(face)] = 1;
+    }
+    for (bool isClosed = false; !isClosed;) {
+        isClosed = true;
+        for (size_t face = 0; face < _refinementEdges.size(); ++face) {
+            Index const* const own = &edges.ofCorner[3 * face];
+            char& isOwnCut = isCut[getRefinementEdge(face)];
+            if (isOwnCut || !(isCut[own[0]] || isCut[own[1]] || isCut[own[2]])) continue;
+            isOwnCut = 1;
+            isClosed = false;
+        }
+    }
+    return isCut;
+}
+
+/// Numbers the edges of the mesh, and those among them that are cut.
+Bisection::CutEdges Bisection::FindCutEdges(std::span<char const> isMarked) const {
     std::vector<Index> const& faces = _mesh.faces;
-    CutEdges edges;
+    CutEdges edges{EdgeNumbers(_mesh.numVertices), {}, {}, {}};
+    edges.ofCorner.reserve(faces.size());
     for (size_t at = 0; at < faces.size(); at += 3) {
         for (size_t k = 0; k < 3; ++k) {
             Index const a = faces[at + k], b = faces[at + (k + 1) % 3];
-            if (static_cast<size_t>(edges.numbers.Get(a, b)) == edges.ends.size())
+            edges.ofCorner.push_back(edges.numbers.Get(a, b));
+            if (static_cast<size_t>(edges.ofCorner.back()) == edges.ends.size())
                 edges.ends.push_back({a, b});
         }
     }
-    std::vector<char> isCut(edges.ends.size(), 0);
-    for (size_t face = 0; face < _refinementEdges.size(); ++face) {
-        size_t const k = _refinementEdges[face];
-        isCut[edges.numbers.Find(faces[3 * face + k], faces[3 * face + (k + 1) % 3])] = 1;
-    }
     Index numVertices = _mesh.numVertices;
-    for (char cut : isCut) edges.middles.push_back(cut ? numVertices++ : -1);
+    for (char cut : CloseCuts(edges, isMarked)) edges.middles.push_back(cut ? numVertices++ : -1);
     return edges;
 }
 
@@ -161,9 +162,13 @@ void Bisection::CutFaces(std::vector<Index> const& coarse, CutEdges const& edges
                              coarseValues = std::exchange(_fvarValues, {});
     _numFVarValues += static_cast<Index>(_fvarParents.size());
     _fvarParents.clear();
-    Halves halves{edges,          _mesh.faces,
-                  _baseFaces,     coarseValues.empty() ? nullptr : &_fvarValues,
-                  _numFVarValues, _fvarParents};
+    Halves halves{edges,
+                  _mesh.faces,
+                  _baseFaces,
+                  coarseValues.empty() ? nullptr : &_fvarValues,
+                  _numFVarValues,
+                  _fvarParents,
+                  EdgeNumbers(_numFVarValues)};
     for (size_t face = 0; face < _refinementEdges.size(); ++face) {
         size_t const k = _refinementEdges[face];
         auto const corner = [&](size_t i) -> CutCorner {
@@ -188,7 +193,11 @@ void Bisection::CutCreases(std::vector<std::array<Index, 2>> const& coarse, CutE
 }
 
 CascadeMesh const& Bisection::Refine() {
-    CutEdges const edges = FindCutEdges();
+    return Refine(std::vector<char>(_refinementEdges.size(), 1));
+}
+
+CascadeMesh const& Bisection::Refine(std::span<char const> isMarked) {
+    CutEdges const edges = FindCutEdges(isMarked);
     CascadeMesh const coarse = std::exchange(_mesh, {});
     AddVertices(coarse.numVertices, edges);
     CutFaces(coarse.faces, edges);

@@ -24,8 +24,18 @@ public:
     Bisection(Index numVertices, std::vector<Index> faces, std::span<double const> positions,
               std::vector<std::array<Index, 2>> creases, std::vector<Index> corners);
 
-    /// One pass. \return the finer mesh, with parents in the one before
+    /// One pass over all triangles. \return the finer mesh, with parents in the one before
     CascadeMesh const& Refine();
+
+    /// One pass that cuts the marked triangles, and others only as far as their edges are cut: a
+    /// triangle with a cut edge is cut at its own refinement edge first, so that no vertex lies on
+    /// the edge of a triangle.
+    ///
+    /// \param isMarked  per triangle
+    CascadeMesh const& Refine(std::span<char const> isMarked);
+
+    /// The mesh as it is, without parents before the first pass.
+    CascadeMesh const& GetMesh() const { return _mesh; }
 
     /// Carries a face-varying channel along: values stay, new ones follow. To be called before the
     /// first pass.
@@ -46,7 +56,8 @@ private:
     struct CutEdges;
     struct Halves;
 
-    CutEdges FindCutEdges() const;
+    CutEdges FindCutEdges(std::span<char const> isMarked) const;
+    std::vector<char> CloseCuts(CutEdges const& edges, std::span<char const> isMarked) const;
     void AddVertices(Index numCoarse, CutEdges const& edges);
     void CutFaces(std::vector<Index> const& coarse, CutEdges const& edges);
     void CutCreases(std::vector<std::array<Index, 2>> const& coarse, CutEdges const& edges);

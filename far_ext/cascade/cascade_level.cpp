@@ -152,6 +152,70 @@ Index FindBandwidth(CascadeLevel const& level) {
     return largest;
 }
 
+/// The size that all faces have.
+int FindFaceSize(Far::TopologyLevel const& level) {
+    int const size = level.GetNumFaces() > 0 ? level.GetFaceVertices(0).size() : 3;
+    for (Index face = 0; face < level.GetNumFaces(); ++face) {
+        int const own = level.GetFaceVertices(face).size();
+        if (own == size && (own == 3 || own == 4)) continue;
+        throw Error(ErrorCode::BadMesh,
+                    fmt::format("face {} has {} corners{}; without refinement all faces must be "
+                                "triangles, or all quads. One level makes them so",
+                                face, own, own == size ? "" : fmt::format(", face 0 {}", size)));
+    }
+    return size;
+}
+
+/// Where a vertex comes from: a vertex, an edge or a face of the coarser level.
+enum ParentKind : char { FromVertex, FromEdge, FromFace };
+
+std::vector<std::pair<ParentKind, Index>> FindSources(Far::TopologyRefiner const& refiner,
+                                                      int level) {
+    auto const coarse = refiner.GetLevel(level - 1), fine = refiner.GetLevel(level);
+    std::vector<std::pair<ParentKind, Index>> sources(fine.GetNumVertices());
+    for (Index i = 0; i < coarse.GetNumVertices(); ++i)
+        sources[coarse.GetVertexChildVertex(i)] = {FromVertex, i};
+    for (Index i = 0; i < coarse.GetNumEdges(); ++i)
+        sources[coarse.GetEdgeChildVertex(i)] = {FromEdge, i};
+    bool const areQuads = refiner.GetSchemeType() != Sdc::SCHEME_LOOP;
+    for (Index i = 0; areQuads && i < coarse.GetNumFaces(); ++i)
+        sources[coarse.GetFaceChildVertex(i)] = {FromFace, i};
+    return sources;
+}
+
+void AddParents(Far::TopologyRefiner const& refiner, int level, CascadeMesh& mesh) {
+    auto const coarse = refiner.GetLevel(level - 1);
+    for (auto const& [kind, source] : FindSources(refiner, level)) {
+        if (kind == FromVertex) {
+            mesh.parents.push_back(source);
+        } else {
+            auto const vertices =
+                kind == FromEdge ? coarse.GetEdgeVertices(source) : coarse.GetFaceVertices(source);
+            mesh.parents.insert(mesh.parents.end(), vertices.begin(), vertices.end());
+        }
+        mesh.parentOffsets.push_back(static_cast<int>(mesh.parents.size()));
+    }
+}
+
+void AddOwnParents(CascadeMesh& mesh) {
+    for (Index vertex = 0; vertex < mesh.numVertices; ++vertex) {
+        mesh.parents.push_back(vertex);
+        mesh.parentOffsets.push_back(vertex + 1);
+    }
+}
+
+void AddTags(Far::TopologyLevel const& level, CascadeMesh& mesh) {
+    for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
+        if (level.GetEdgeSharpness(edge) <= 0.0f || level.IsEdgeBoundary(edge)) continue;
+        auto const ends = level.GetEdgeVertices(edge);
+        mesh.creases.push_back({ends[0], ends[1]});
+    }
+    for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
+        if (level.GetVertexSharpness(vertex) > 0.0f && !level.IsVertexBoundary(vertex))
+            mesh.corners.push_back(vertex);
+    }
+}
+
 }  // namespace
 
 CascadeLevel BuildCascadeLevel(CascadeMesh const& mesh, std::span<Index const> coarseVertices,
@@ -201,42 +265,22 @@ CascadeLevel BuildCascadeLevel(CascadeMesh const& mesh, std::span<Index const> c
 }
 
 CascadeMesh MakeCascadeMesh(Far::TopologyRefiner const& refiner, int level) {
-    auto const coarse = refiner.GetLevel(level - 1), fine = refiner.GetLevel(level);
+    auto const fine = refiner.GetLevel(level);
     CascadeMesh mesh;
     mesh.numVertices = fine.GetNumVertices();
-    mesh.faceSize = refiner.GetSchemeType() == Sdc::SCHEME_LOOP ? 3 : 4;
+    mesh.faceSize = level == 0                                    ? FindFaceSize(fine)
+                    : refiner.GetSchemeType() == Sdc::SCHEME_LOOP ? 3
+                                                                  : 4;
     mesh.faces.reserve(fine.GetNumFaceVertices());
     for (Index face = 0; face < fine.GetNumFaces(); ++face) {
         auto const vertices = fine.GetFaceVertices(face);
         mesh.faces.insert(mesh.faces.end(), vertices.begin(), vertices.end());
     }
-    enum : char { FromVertex, FromEdge, FromFace };
-    std::vector<std::pair<char, Index>> sources(mesh.numVertices);
-    for (Index i = 0; i < coarse.GetNumVertices(); ++i)
-        sources[coarse.GetVertexChildVertex(i)] = {FromVertex, i};
-    for (Index i = 0; i < coarse.GetNumEdges(); ++i)
-        sources[coarse.GetEdgeChildVertex(i)] = {FromEdge, i};
-    for (Index i = 0; mesh.faceSize == 4 && i < coarse.GetNumFaces(); ++i)
-        sources[coarse.GetFaceChildVertex(i)] = {FromFace, i};
-    for (auto const& [kind, source] : sources) {
-        if (kind == FromVertex) {
-            mesh.parents.push_back(source);
-        } else {
-            auto const vertices =
-                kind == FromEdge ? coarse.GetEdgeVertices(source) : coarse.GetFaceVertices(source);
-            mesh.parents.insert(mesh.parents.end(), vertices.begin(), vertices.end());
-        }
-        mesh.parentOffsets.push_back(static_cast<int>(mesh.parents.size()));
-    }
-    for (Index edge = 0; edge < fine.GetNumEdges(); ++edge) {
-        if (fine.GetEdgeSharpness(edge) <= 0.0f || fine.IsEdgeBoundary(edge)) continue;
-        auto const ends = fine.GetEdgeVertices(edge);
-        mesh.creases.push_back({ends[0], ends[1]});
-    }
-    for (Index vertex = 0; vertex < fine.GetNumVertices(); ++vertex) {
-        if (fine.GetVertexSharpness(vertex) > 0.0f && !fine.IsVertexBoundary(vertex))
-            mesh.corners.push_back(vertex);
-    }
+    if (level == 0)
+        AddOwnParents(mesh);
+    else
+        AddParents(refiner, level, mesh);
+    AddTags(fine, mesh);
     return mesh;
 }
 

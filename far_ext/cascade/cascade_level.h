@@ -30,7 +30,9 @@ struct CascadeMesh {
 /// bilinear refinement get their centre. Creases and corners are those whose sharpness lasts to
 /// this level.
 ///
-/// \param level  1 to the last
+/// \param level   0 to the last; on level 0 each vertex is its own parent
+/// \throws Error  BadMesh: on level 0, a face (named) that is neither a triangle nor a quad, or not
+///                as all others
 CascadeMesh MakeCascadeMesh(Far::TopologyRefiner const& refiner, int level);
 
 /// What happens at boundaries.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <random>
 #include <set>
 #include <tuple>
 
@@ -285,6 +286,115 @@ TEST(Bisection, CarriesCreasesAndCorners) {
                      });
     }
     EXPECT_GT(numCreased, 5);
+}
+
+// ---- marked triangles ---------------------------------------------------------------------------
+
+/// Passes that cut a third of the triangles each, chosen at random.
+template <class Check>
+void ForRandomPasses(engine::Scene const& scene, int count, Check const& check) {
+    std::mt19937 random(17);
+    auto bisection = MakeBisection(scene);
+    auto points = scene.positions;
+    for (int pass = 0; pass < count; ++pass) {
+        std::vector<char> isMarked(bisection.GetBaseFaces().size());
+        for (char& mark : isMarked) mark = random() % 3 == 0;
+        CascadeMesh const coarse = bisection.GetMesh();
+        CascadeMesh const fine = bisection.Refine(isMarked);
+        points = test::ApplyParents(fine.parentOffsets, fine.parents, points);
+        check(coarse, isMarked, fine, points, bisection.GetBaseFaces());
+    }
+}
+
+/// Squares of a triangle's edges, sorted, over the longest: its shape.
+std::array<double, 2> FindShape(std::vector<double> const& points, Index const* face) {
+    std::array<double, 3> squares;
+    for (size_t k = 0; k < 3; ++k)
+        squares[k] = (PointAt(points, face[(k + 1) % 3]) - PointAt(points, face[k])).squaredNorm();
+    std::sort(squares.begin(), squares.end());
+    return {squares[0] / squares[2], squares[1] / squares[2]};
+}
+
+TEST(Bisection, OfMarkedTrianglesIsConforming) {
+    for (auto const& [name, scene] : GetTriangleMeshes()) {
+        auto const start = CountFacesAtEdges(test::MakeSameMesh(scene));
+        auto const countBoundary = [](auto const& edges) {
+            return std::count_if(edges.begin(), edges.end(),
+                                 [](auto const& edge) { return edge.second == 1; });
+        };
+        ForRandomPasses(
+            scene, 5,
+            [&](auto const&, auto const&, CascadeMesh const& fine, auto const&, auto const&) {
+                auto const edges = CountFacesAtEdges(fine);
+                for (auto const& [edge, count] : edges) EXPECT_LE(count, 2) << name;
+                // A vertex on the edge of a triangle would leave both sides of it with one face.
+                EXPECT_EQ(countBoundary(start) == 0, countBoundary(edges) == 0) << name;
+            });
+    }
+}
+
+TEST(Bisection, CutsAllMarkedTrianglesAndKeepsTheSurface) {
+    for (auto const& [name, scene] : GetTriangleMeshes()) {
+        double const area = [&] {
+            double sum = 0.0;
+            auto const& f = scene.cage.faceVertices;
+            for (size_t face = 0; face < f.size(); face += 3)
+                sum += (PointAt(scene.positions, f[face + 1]) - PointAt(scene.positions, f[face]))
+                           .cross(PointAt(scene.positions, f[face + 2]) -
+                                  PointAt(scene.positions, f[face]))
+                           .norm();
+            return sum;
+        }();
+        ForRandomPasses(
+            scene, 4,
+            [&](CascadeMesh const& coarse, std::vector<char> const& isMarked,
+                CascadeMesh const& fine, std::vector<double> const& points, auto const&) {
+                std::set<std::set<Index>> kept;
+                double sum = 0.0;
+                for (size_t face = 0; face < fine.faces.size(); face += 3) {
+                    Index const* const f = &fine.faces[face];
+                    kept.insert({f[0], f[1], f[2]});
+                    sum += (PointAt(points, f[1]) - PointAt(points, f[0]))
+                               .cross(PointAt(points, f[2]) - PointAt(points, f[0]))
+                               .norm();
+                }
+                EXPECT_NEAR(sum, area, 1e-12 * area) << name;
+                for (size_t face = 0; face < isMarked.size(); ++face) {
+                    Index const* const f = &coarse.faces[3 * face];
+                    EXPECT_TRUE(!isMarked[face] || kept.count({f[0], f[1], f[2]}) == 0) << name;
+                }
+            });
+    }
+}
+
+TEST(Bisection, LeavesAtMostFourShapesOfEachTriangle) {
+    for (auto const& [name, scene] : GetTriangleMeshes()) {
+        std::vector<std::vector<std::array<double, 2>>> shapes(scene.cage.faceVertices.size() / 3);
+        ForRandomPasses(scene, 6,
+                        [&](auto const&, auto const&, CascadeMesh const& fine,
+                            std::vector<double> const& points, std::vector<Index> const& base) {
+                            for (size_t face = 0; face < base.size(); ++face) {
+                                auto const shape = FindShape(points, &fine.faces[3 * face]);
+                                auto& known = shapes[static_cast<size_t>(base[face])];
+                                bool const isKnown =
+                                    std::any_of(known.begin(), known.end(), [&](auto const& other) {
+                                        return std::abs(other[0] - shape[0]) +
+                                                   std::abs(other[1] - shape[1]) <
+                                               1e-9;
+                                    });
+                                if (!isKnown) known.push_back(shape);
+                            }
+                        });
+        for (auto const& known : shapes) EXPECT_LE(known.size(), 4u) << name;
+    }
+}
+
+TEST(Bisection, WithoutMarksNothingIsCut) {
+    auto const scene = test::LoadMesh("torustri");
+    auto bisection = MakeBisection(scene);
+    std::vector<char> const none(scene.cage.faceVertices.size() / 3, 0);
+    EXPECT_EQ(bisection.Refine(none).numVertices, scene.cage.numVertices);
+    EXPECT_EQ(bisection.GetMesh().faces.size(), scene.cage.faceVertices.size());
 }
 
 }  // namespace
