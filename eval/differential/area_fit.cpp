@@ -276,8 +276,8 @@ private:
     double _value = 0.1, _growth = 2.0;
 };
 
-/// Whether the last steps gained little: three less than 2 %. Hundreds more would gain some 20 %,
-/// by thinner triangles.
+/// Whether the last steps gained little: three less than 2 %. Hundreds more would gain a tenth to
+/// four tenths, by thinner triangles.
 bool HasStalled(std::vector<double> const& residuals) {
     constexpr size_t kSteps = 3;
     size_t const last = residuals.size() - 1;
