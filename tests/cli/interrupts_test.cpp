@@ -74,7 +74,8 @@ TEST_P(Interrupted, EndsWithinASecondOfProcessorTimeAndLeavesNothing) {
     test::TemporaryFolder const folder;
     Words words{LIMN_PROGRAM};
     for (std::string word : GetParam().words) {
-        for (size_t at; (at = word.find("MESH")) != std::string::npos;)
+        for (size_t at = 0; (at = word.find("MESH", at)) != std::string::npos;
+             at += inputs.mesh.size())
             word.replace(at, 4, inputs.mesh);
         if (word == "PLACES") word = inputs.places;
         if (word.starts_with("OUT")) word = folder / word;
