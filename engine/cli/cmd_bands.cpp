@@ -16,6 +16,7 @@ struct BandsArguments {
     std::string mesh, output;
     std::optional<int> count;
     far_ext::LimitOptions rule;
+    std::optional<eval::EvaluatorKind> evaluator;
     BandArguments sum;
 };
 
@@ -37,7 +38,9 @@ int WriteBands(BandsArguments const& a, Context& context) {
     for (int i = 0; i < *a.count; ++i) written.push_back({"-o", NameBand(a.output, i)});
     context.KeepApart({{"MESH", a.mesh}}, written);
     auto const model = context.Load(a.mesh);
-    auto bands = engine::SplitIntoBands(model, *a.count, a.rule, context.GetJob());
+    auto const evaluator = MakeEvaluator(a.evaluator, context.GetCommon().precision);
+    auto bands = engine::SplitIntoBands(model, *a.count, a.rule, context.GetJob(), evaluator.get());
+    AddToReport(context.GetReport(), evaluator.get());
     context.GetReport()["before"] = DescribeExtent(model, model.GetPositions());
     engine::Scene output = model.MakeScene();
     // One for all, so that they add up as well as the mesh is written.
@@ -66,13 +69,16 @@ int WriteBands(BandsArguments const& a, Context& context) {
 int WriteSum(BandsArguments const& a, Context& context) {
     if (a.sum.from.empty() && !a.count) throw Error(ErrorCode::BadOption, "--gain needs --count");
     auto options = MakeBandSum(a.sum, a.count, "--count");
+    auto const evaluator = MakeEvaluator(a.evaluator, context.GetCommon().precision);
     options.rule = a.rule;
+    options.evaluator = evaluator.get();
     std::string const path = NameSum(a.output);
     context.KeepApart({{"MESH", a.mesh}, {"--from", a.sum.from}}, {{"-o", path}});
     auto const model = context.Load(a.mesh);
     if (!a.sum.from.empty()) options.from = context.Load(a.sum.from);
     auto sum = engine::SumBands(model, options, context.GetJob());
     AddToReport(context.GetReport(), a.sum, sum);
+    AddToReport(context.GetReport(), evaluator.get());
     context.GetReport()["before"] = DescribeExtent(model, model.GetPositions());
     WriteFiltered(path, model, std::move(sum.positions), context);
     return kDone;
@@ -96,6 +102,7 @@ Verb AddBands(CLI::App& app) {
     AddBandOptions(*verb, a->sum,
                    "of --from: bands I to J, from 0, I- (with the remainder) or one");
     AddAlpha(*verb, a->rule);
+    AddEvaluatorOption(*verb, a->evaluator, "A");
     verb->footer(
         "Example:\n  limn bands scenes/spot/spot.obj -o out/spot --count 4 --precision double");
     return {verb, [a](Context& context) {

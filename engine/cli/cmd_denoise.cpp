@@ -11,6 +11,7 @@ template <class Options>
 struct FilterArguments {
     std::string mesh, output;
     Options options;
+    std::optional<eval::EvaluatorKind> evaluator;
 };
 
 template <class Options>
@@ -19,6 +20,7 @@ void AddArguments(CLI::App& verb, FilterArguments<Options>& a) {
     verb.add_option("-o,--output", a.output, "mesh to write, .obj or .ply")->required();
     AddNumberOption(verb, "--steps", a.options.steps, "how often (default 1)", {1, 1000});
     AddAlpha(verb, a.options.rule);
+    AddEvaluatorOption(verb, a.evaluator, "A");
 }
 
 /// Loads, filters the positions and writes, with the sizes before and after in the report.
@@ -29,7 +31,12 @@ int Run(FilterArguments<Options> const& a, Context& context,
     context.KeepApart({{"MESH", a.mesh}}, {{"-o", a.output}});
     auto const model = context.Load(a.mesh);
     context.GetReport()["before"] = DescribeExtent(model, model.GetPositions());
-    WriteFiltered(a.output, model, filter(model, a.options, context.GetJob()), context);
+    auto const evaluator = MakeEvaluator(a.evaluator, context.GetCommon().precision);
+    Options options = a.options;
+    options.evaluator = evaluator.get();
+    auto positions = filter(model, options, context.GetJob());
+    AddToReport(context.GetReport(), evaluator.get());
+    WriteFiltered(a.output, model, std::move(positions), context);
     return kDone;
 }
 

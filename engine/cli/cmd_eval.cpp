@@ -128,13 +128,13 @@ int Run(EvalArguments const& a, CLI::App const& verb, Context& context) {
     context.GetReport()["places"] = places.faces.size();
     if (!a.frames.empty()) {
         EvaluateFrames(a, model, places, evaluator.get(), context);
-        if (evaluator) context.GetReport()["evaluator"] = DescribeEvaluator(*evaluator);
+        AddToReport(context.GetReport(), evaluator.get());
         return kDone;
     }
     auto const values = engine::NamingRows(
         places, [&] { return Evaluate(a, model, places, evaluator.get(), context); });
     auto const columns = EvaluateMaps(a, model, places, context);
-    if (evaluator) context.GetReport()["evaluator"] = DescribeEvaluator(*evaluator);
+    AddToReport(context.GetReport(), evaluator.get());
     context.GetReport()["places_without_limit"] = values.CountWithoutLimit();
     context.GetJob().Start("writing " + (a.output.empty() ? "stdout" : a.output));
     Precision const precision = common.precision.value_or(enough);

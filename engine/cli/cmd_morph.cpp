@@ -16,6 +16,7 @@ struct MorphArguments {
     int numSteps = 10;
     engine::MorphStep step;
     engine::MorphOptions options;
+    std::optional<eval::EvaluatorKind> evaluator;
 };
 
 std::string NameStep(std::string const& prefix, size_t step) {
@@ -44,7 +45,9 @@ int Run(MorphArguments const& a, CLI::App const& verb, Context& context) {
     RequirePrefix("-o", a.prefix);
     std::vector<NamedFile> const read{{"FROM", a.from}, {"TO", a.to}, {"--schedule", a.schedule}};
     context.KeepApart(read, {});
-    auto const options = MakeOptions(a);
+    auto options = MakeOptions(a);
+    auto const evaluator = MakeEvaluator(a.evaluator, context.GetCommon().precision);
+    options.evaluator = evaluator.get();
     std::vector<NamedFile> written;
     for (size_t step = 1; step <= options.steps.size(); ++step)
         written.push_back({"-o", NameStep(a.prefix, step)});
@@ -66,6 +69,7 @@ int Run(MorphArguments const& a, CLI::App const& verb, Context& context) {
         outputs.push_back(DescribeOutput(path, to, output.positions, precision));
     }
     context.GetReport()["after"] = DescribeExtent(to, output.positions);
+    AddToReport(context.GetReport(), evaluator.get());
     files.Commit();
     context.GetReport()["outputs"] = std::move(outputs);
     context.Warn(warnings);
@@ -95,6 +99,7 @@ Verb AddMorph(CLI::App& app) {
                    "the last mesh is TO: what the steps leave of the difference is taken off on "
                    "the way");
     AddAlpha(*verb, a->options.rule);
+    AddEvaluatorOption(*verb, a->evaluator, "A");
     verb->footer("Example:\n  limn morph neutral.obj smile.obj -o out/smile --steps 12");
     return {verb, [a, verb](Context& context) { return Run(*a, *verb, context); }};
 }

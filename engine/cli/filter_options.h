@@ -5,6 +5,7 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
+#include "engine/cli/options/evaluator_option.h"
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/fit/bands.h"
@@ -12,7 +13,8 @@
 
 namespace limn::cli {
 
-// What bands, denoise, sharpen, morph and fit have in common: --alpha, and a report of sizes.
+// What bands, denoise, sharpen, morph and fit have in common: --alpha, --evaluator, and a report of
+// sizes.
 
 inline constexpr auto kAlphaRuleWords = MakeEnumWords<far_ext::LimitOptions::AlphaRule>(
     "alphaRule", {{far_ext::LimitOptions::AlphaRule::FirstStep, "first"},

@@ -28,7 +28,7 @@ eval::BandGains WithoutGains(eval::BandGains gains) {
 }
 
 /// The weighed bands of some positions, which are told of in `parts`.
-std::vector<double> TakeBands(eval::LimitOperator const& A, eval::BandGains const& gains,
+std::vector<double> TakeBands(eval::LimitApplication const& A, eval::BandGains const& gains,
                               std::vector<double> positions, std::vector<BandSum::Part>& parts,
                               Job& job) {
     eval::WeighBands(A, 3, gains, positions, [&](int i, std::span<double const> band) {
@@ -51,7 +51,8 @@ BandSum SumBands(Model const& model, BandSumOptions const& options, Job& job) {
     }
     if (options.from) RequireSameFaces(model, *options.from, "a sum of bands");
     job.Start("building the limit matrix");
-    auto const A = eval::LimitOperator::Build(model.GetRefiner(), 0, options.rule);
+    auto const A =
+        eval::LimitApplication::Build(model.GetRefiner(), options.rule, options.evaluator);
     job.Start("filtering");
     BandSum sum;
     Model const& source = options.from ? *options.from : model;

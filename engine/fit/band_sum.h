@@ -17,6 +17,7 @@ struct BandSumOptions {
                                    ///< which then are all that is left of it
     Carry carry = Carry::Local;    ///< how those of another mesh come over
     far_ext::LimitOptions rule{};  ///< of the limit matrix, as SplitIntoBands
+    eval::TableEvaluator* evaluator = nullptr;  ///< the same
 };
 
 /// A mesh as a sum of bands: its own, weighed, or itself with some bands of another.

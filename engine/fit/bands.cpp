@@ -37,9 +37,10 @@ MeshExtent MeasureExtent(Model const& model, std::span<double const> positions) 
     return extent;
 }
 
-Bands SplitIntoBands(Model const& model, int count, far_ext::LimitOptions const& rule, Job& job) {
+Bands SplitIntoBands(Model const& model, int count, far_ext::LimitOptions const& rule, Job& job,
+                     eval::TableEvaluator* evaluator) {
     job.Start("building the limit matrix");
-    auto const A = eval::LimitOperator::Build(model.GetRefiner(), 0, rule);
+    auto const A = eval::LimitApplication::Build(model.GetRefiner(), rule, evaluator);
     std::vector<std::vector<double>> bands;
     job.Start("filtering");
     std::vector<double> rest = model.GetPositions();
@@ -58,7 +59,8 @@ Bands SplitIntoBands(Model const& model, int count, far_ext::LimitOptions const&
 
 std::vector<double> Denoise(Model const& model, DenoiseOptions const& options, Job& job) {
     job.Start("building the limit matrix");
-    auto const A = eval::LimitOperator::Build(model.GetRefiner(), 0, options.rule);
+    auto const A =
+        eval::LimitApplication::Build(model.GetRefiner(), options.rule, options.evaluator);
     job.Start("filtering");
     std::vector<double> positions = model.GetPositions();
     for (int step = 0; step < options.steps; ++step) {
@@ -75,7 +77,8 @@ std::vector<double> Sharpen(Model const& model, SharpenOptions const& options, J
                                 options.first, options.last));
     }
     job.Start("building the limit matrix");
-    auto const A = eval::LimitOperator::Build(model.GetRefiner(), 0, options.rule);
+    auto const A =
+        eval::LimitApplication::Build(model.GetRefiner(), options.rule, options.evaluator);
     job.Start("filtering");
     std::vector<double> positions = model.GetPositions();
     Extent const before = FindExtent(positions);

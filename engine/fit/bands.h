@@ -8,6 +8,7 @@
 #include "engine/scene/extent.h"
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
+#include "eval/stencils/table_evaluator.h"
 #include "far_ext/limit/limit_row.h"
 
 namespace limn::engine {
@@ -26,16 +27,19 @@ struct Bands {
     std::vector<double> remainder;
 };
 
-/// \param rule    of the limit matrix: generalised Catmull-Clark has an alpha of 0 (plain) to 1
+/// \param rule       of the limit matrix: generalised Catmull-Clark has an alpha of 0 (plain) to 1
+/// \param evaluator  applies that matrix, in float; null: in double
 /// \throws Error  BadOption: alpha outside [0, 1] or with a scheme that has none
 /// \throws Stopped
-Bands SplitIntoBands(Model const& model, int count, far_ext::LimitOptions const& rule, Job& job);
+Bands SplitIntoBands(Model const& model, int count, far_ext::LimitOptions const& rule, Job& job,
+                     eval::TableEvaluator* evaluator = nullptr);
 
 /// The mesh's positions with its lowest bands only.
 struct DenoiseOptions {
     int detail = 2;                ///< the last band to keep
     int steps = 1;                 ///< how often
     far_ext::LimitOptions rule{};  ///< as SplitIntoBands
+    eval::TableEvaluator* evaluator = nullptr;
 };
 std::vector<double> Denoise(Model const& model, DenoiseOptions const& options, Job& job);
 
@@ -44,6 +48,7 @@ struct SharpenOptions {
     int first = 2, last = 4;  ///< powers of the high-pass filter, from 1
     int steps = 1;
     far_ext::LimitOptions rule{};
+    eval::TableEvaluator* evaluator = nullptr;
 };
 
 /// \param job     told where the mesh outgrows itself

@@ -12,7 +12,7 @@ namespace {
 /// Fewer steps leave bumps of the edges' length in the frames, more forget how the surface bends.
 constexpr int kSmoothings = 8;
 
-std::vector<double> Smooth(eval::LimitOperator const& A, std::span<double const> positions,
+std::vector<double> Smooth(eval::LimitApplication const& A, std::span<double const> positions,
                            Job& job) {
     std::vector<double> smooth(positions.begin(), positions.end()), limits(positions.size());
     for (int i = 0; i < kSmoothings; ++i) {
@@ -25,7 +25,7 @@ std::vector<double> Smooth(eval::LimitOperator const& A, std::span<double const>
 
 }  // namespace
 
-double CarryVectors(Carry carry, eval::LimitOperator const& A, Far::TopologyLevel const& level,
+double CarryVectors(Carry carry, eval::LimitApplication const& A, Far::TopologyLevel const& level,
                     std::span<double const> from, std::span<double const> to,
                     std::span<double> vectors, Job& job) {
     if (carry == Carry::Object) return 0.0;

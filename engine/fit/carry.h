@@ -5,7 +5,7 @@
 
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
-#include "eval/fit/limit_operator.h"
+#include "eval/fit/limit_application.h"
 #include "far_ext/enum_words.h"
 
 namespace limn::engine {
@@ -26,7 +26,7 @@ inline constexpr auto kCarryWords =
 /// \return       the largest angle by which one has been turned, in degrees
 /// \throws Stopped
 /// Source   [Limit 7]
-double CarryVectors(Carry carry, eval::LimitOperator const& A, Far::TopologyLevel const& level,
+double CarryVectors(Carry carry, eval::LimitApplication const& A, Far::TopologyLevel const& level,
                     std::span<double const> from, std::span<double const> to,
                     std::span<double> vectors, Job& job);
 

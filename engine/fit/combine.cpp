@@ -40,7 +40,7 @@ double AddOffsets(Model const& model, CombineOptions const& options, std::vector
                   Job& job) {
     if (options.offsets.empty()) return 0.0;
     job.Start("building the limit matrix");
-    auto const A = eval::LimitOperator::Build(model.GetRefiner());
+    eval::LimitApplication const A = eval::LimitOperator::Build(model.GetRefiner());
     double largestTurn = 0.0;
     for (auto const& [from, to, weight] : options.offsets) {
         std::vector<double> offset = to.GetPositions();

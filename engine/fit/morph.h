@@ -6,7 +6,7 @@
 
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
-#include "eval/fit/limit_operator.h"
+#include "eval/fit/limit_application.h"
 
 namespace limn::engine {
 
@@ -20,7 +20,8 @@ struct MorphOptions {
     std::vector<MorphStep> steps = std::vector<MorphStep>(10);  ///< one per frame
     bool endsExactly = false;  ///< the last frame is the mesh that is gone to; what the steps leave
                                ///< of the difference is taken off little by little
-    far_ext::LimitOptions rule{};  ///< of the limit matrix, as SplitIntoBands
+    far_ext::LimitOptions rule{};               ///< of the limit matrix, as SplitIntoBands
+    eval::TableEvaluator* evaluator = nullptr;  ///< the same; outlives the morph
 };
 
 /// The way from one mesh to another of the same faces, frame by frame; detail goes first.
@@ -49,7 +50,7 @@ private:
 
     Model _to;
     MorphOptions _options;
-    eval::LimitOperator _operator;
+    eval::LimitApplication _A;
     size_t _numMade = 0;
     double _kept = 1.0, _keptAtEnd = 1.0;           // products of rates
     std::vector<double> _positions, _rest, _frame;  // Q_k, Q_N - M, the frame where that differs

@@ -9,7 +9,7 @@
 
 namespace limn::eval {
 
-void ApplyHighPass(LimitOperator const& A, int length, int power, std::vector<double>& x,
+void ApplyHighPass(LimitApplication const& A, int length, int power, std::vector<double>& x,
                    std::function<void(int, std::span<double const>)> const& visit) {
     std::vector<double> limit(x.size());
     if (visit) visit(0, x);
@@ -20,7 +20,8 @@ void ApplyHighPass(LimitOperator const& A, int length, int power, std::vector<do
     }
 }
 
-void WeighBands(LimitOperator const& A, int length, BandGains const& gains, std::vector<double>& x,
+void WeighBands(LimitApplication const& A, int length, BandGains const& gains,
+                std::vector<double>& x,
                 std::function<void(int, std::span<double const>)> const& visit) {
     std::vector<double> rest = x, band(x.size());
     std::fill(x.begin(), x.end(), 0.0);
@@ -38,7 +39,7 @@ void WeighBands(LimitOperator const& A, int length, BandGains const& gains, std:
     add(*gains.remainder, rest);
 }
 
-void Denoise(LimitOperator const& A, int length, int detail, int steps, std::vector<double>& x) {
+void Denoise(LimitApplication const& A, int length, int detail, int steps, std::vector<double>& x) {
     std::vector<double> high;
     for (int step = 0; step < steps; ++step) {
         high = x;
@@ -47,7 +48,7 @@ void Denoise(LimitOperator const& A, int length, int detail, int steps, std::vec
     }
 }
 
-void Sharpen(LimitOperator const& A, int length, int first, int last, int steps,
+void Sharpen(LimitApplication const& A, int length, int first, int last, int steps,
              std::vector<double>& x) {
     std::vector<double> high;
     for (int step = 0; step < steps; ++step) {
@@ -58,7 +59,7 @@ void Sharpen(LimitOperator const& A, int length, int first, int last, int steps,
     }
 }
 
-void MorphStep(LimitOperator const& A, int length, int detail, double rate,
+void MorphStep(LimitApplication const& A, int length, int detail, double rate,
                std::span<double const> M, std::vector<double>& Q) {
     for (size_t k = 0; k < Q.size(); ++k) Q[k] -= M[k];
     Denoise(A, length, detail, 1, Q);

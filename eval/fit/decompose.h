@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "eval/fit/limit_operator.h"
+#include "eval/fit/limit_application.h"
 
 namespace limn::eval {
 
@@ -21,7 +21,7 @@ namespace limn::eval {
 /// x <- (E-A)^power x.
 ///
 /// \param visit  called with i and (E-A)^i x for i = 0 to power; may be empty
-void ApplyHighPass(LimitOperator const& A, int length, int power, std::vector<double>& x,
+void ApplyHighPass(LimitApplication const& A, int length, int power, std::vector<double>& x,
                    std::function<void(int, std::span<double const>)> const& visit = {});
 
 /// Bands that follow each other, each with a gain, and what lies beyond them.
@@ -38,19 +38,20 @@ struct BandGains {
 ///
 /// \param visit  called with i and band i from 0 on, before it is weighed, and with the end and the
 ///               remainder where that is taken; may be empty
-void WeighBands(LimitOperator const& A, int length, BandGains const& gains, std::vector<double>& x,
+void WeighBands(LimitApplication const& A, int length, BandGains const& gains,
+                std::vector<double>& x,
                 std::function<void(int, std::span<double const>)> const& visit = {});
 
 /// x <- (E - (E-A)^(detail+1)) x, `steps` times: keeps the bands 0 to detail.
-void Denoise(LimitOperator const& A, int length, int detail, int steps, std::vector<double>& x);
+void Denoise(LimitApplication const& A, int length, int detail, int steps, std::vector<double>& x);
 
 /// x <- x + sum over i = first to last of (E-A)^i x, `steps` times. \pre 0 < first <= last: the
 /// constant part stays
-void Sharpen(LimitOperator const& A, int length, int first, int last, int steps,
+void Sharpen(LimitApplication const& A, int length, int first, int last, int steps,
              std::vector<double>& x);
 
 /// Q <- M + rate (E - (E-A)^(detail+1)) (Q - M): one step of the way from Q to M.
-void MorphStep(LimitOperator const& A, int length, int detail, double rate,
+void MorphStep(LimitApplication const& A, int length, int detail, double rate,
                std::span<double const> M, std::vector<double>& Q);
 
 /// \throws Error  BadMesh: a number that is not finite (vertex named)

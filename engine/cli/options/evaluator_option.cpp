@@ -28,16 +28,18 @@ std::unique_ptr<eval::TableEvaluator> MakeEvaluator(std::optional<eval::Evaluato
     return std::make_unique<eval::TableEvaluator>(*kind);
 }
 
-nlohmann::json DescribeEvaluator(eval::TableEvaluator const& evaluator) {
+void AddToReport(nlohmann::json& report, eval::TableEvaluator const* evaluator) {
+    if (!evaluator) return;
     nlohmann::json tables = nlohmann::json::array();
-    for (eval::TableUse const& use : evaluator.GetUses()) {
+    for (eval::TableUse const& use : evaluator->GetUses()) {
         tables.push_back({{"what", use.what},
                           {"rows", use.rows},
                           {"entries", use.entries},
                           {"applications", use.applications},
                           {"seconds", use.seconds}});
     }
-    return {{"name", eval::GetName(evaluator.GetKind())}, {"tables", std::move(tables)}};
+    report["evaluator"] = {{"name", eval::GetName(evaluator->GetKind())},
+                           {"tables", std::move(tables)}};
 }
 
 }  // namespace limn::cli

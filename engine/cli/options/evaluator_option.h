@@ -23,7 +23,7 @@ void AddEvaluatorOption(CLI::App& verb, std::optional<eval::EvaluatorKind>& kind
 std::unique_ptr<eval::TableEvaluator> MakeEvaluator(std::optional<eval::EvaluatorKind> kind,
                                                     std::optional<Precision> precision);
 
-/// The report's `evaluator`: what was applied, and how often.
-nlohmann::json DescribeEvaluator(eval::TableEvaluator const& evaluator);
+/// Adds `evaluator`: what was applied, and how often. Nothing without one.
+void AddToReport(nlohmann::json& report, eval::TableEvaluator const* evaluator);
 
 }  // namespace limn::cli

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// --evaluator of the verbs that apply a table of weights.
+
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "support/cli.h"
+
+namespace limn {
+namespace {
+
+using namespace test::cli;
+
+/// The coordinates of an OBJ's vertices.
+std::vector<double> ReadVertices(std::string const& path) {
+    std::vector<double> values;
+    for (std::string const& line : Lines(test::ReadText(path))) {
+        if (!line.starts_with("v ")) continue;
+        std::istringstream fields(line.substr(2));
+        double value = 0.0;
+        for (int i = 0; i < 3 && fields >> value; ++i) values.push_back(value);
+    }
+    return values;
+}
+
+/// A verb that applies A, and the file of it to look at.
+struct FilterRun {
+    char const* name;
+    Words words;
+    std::string output;
+};
+
+void PrintTo(FilterRun const& run, std::ostream* stream) {
+    *stream << run.name;
+}
+
+class Evaluator : public Cli, public testing::WithParamInterface<FilterRun> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Filters, Evaluator,
+    testing::Values(
+        FilterRun{"Bands", {"bands", "MESH", "--count", "3"}, "a.band1.obj"},
+        FilterRun{"Gains", {"bands", "MESH", "--count", "3", "--gain", "1,2,1"}, "a.gain.obj"},
+        FilterRun{"Denoise", {"denoise", "MESH", "--steps", "3"}, "a.obj"},
+        FilterRun{"Sharpen", {"sharpen", "MESH"}, "a.obj"},
+        FilterRun{"Morph", {"morph", "MESH", "OTHER", "--steps", "4"}, "a.0004.obj"}),
+    [](auto const& instance) { return std::string(instance.param.name); });
+
+TEST_P(Evaluator, IsNearTheDoublesAndCountsItsApplications) {
+    // Far from the origin, where a coordinate in float would be off by more than is allowed.
+    std::string mesh, other;
+    for (std::string const& line : Lines(test::ReadText(test::ScenePath("spot/spot.obj")))) {
+        std::string moved = line;
+        if (line.starts_with("v ")) {
+            std::istringstream fields(line.substr(2));
+            double x = 0.0, y = 0.0, z = 0.0;
+            fields >> x >> y >> z;
+            std::ostringstream text;
+            text.precision(17);
+            text << "v " << x + 100.0 << ' ' << y << ' ' << z;
+            moved = text.str();
+        }
+        mesh += moved + "\n";
+    }
+    folder.Write("mesh.obj", mesh);
+    ASSERT_EQ(Limn({"denoise", folder / "mesh.obj", "-o", folder / "other.obj"}).status, 0);
+
+    bool const isPrefix = GetParam().output != "a.obj";
+    auto const run = [&](std::string const& name, Words const& more) {
+        Words words;
+        for (std::string word : GetParam().words) {
+            if (word == "MESH") word = folder / "mesh.obj";
+            if (word == "OTHER") word = folder / "other.obj";
+            words.push_back(word);
+        }
+        Outcome const outcome =
+            Limn(words + Words{"-o", folder / (isPrefix ? name : name + ".obj")} + more);
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        return ReadVertices(folder / (name + GetParam().output.substr(1)));
+    };
+    auto const expected = run("a", {});
+    std::vector<double> ofCpu;
+    for (char const* kind : {"osd-cpu", "osd-omp", "simd"}) {
+        auto const found = run("b", {"--evaluator", kind, "--report", folder / "r.json"});
+        ASSERT_EQ(found.size(), expected.size());
+        for (size_t i = 0; i < found.size(); ++i)
+            EXPECT_NEAR(found[i], expected[i], 1e-5) << kind << ' ' << i;
+        if (ofCpu.empty()) ofCpu = found;
+        for (size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], ofCpu[i], 1e-5);
+        json const report = Report()["evaluator"];
+        EXPECT_EQ(report["name"], kind);
+        ASSERT_EQ(report["tables"].size(), 1u);
+        EXPECT_EQ(report["tables"][0]["what"], "A");
+        EXPECT_EQ(report["tables"][0]["rows"], expected.size() / 3);
+        EXPECT_GE(report["tables"][0]["applications"], 3);
+    }
+}
+
+TEST_P(Evaluator, ExcludesDouble) {
+    Words words;
+    for (std::string const& word : GetParam().words)
+        words.push_back(word == "MESH" || word == "OTHER" ? test::ScenePath("spot/spot.obj")
+                                                          : word);
+    ExpectError(Limn(words + Words{"-o", folder / (GetParam().output == "a.obj" ? "a.obj" : "a"),
+                                   "--evaluator", "osd-cpu", "--precision", "double"}),
+                2, "--evaluator osd-cpu works in float; --precision double excludes it");
+    EXPECT_TRUE(folder.List().empty());
+}
+
+}  // namespace
+}  // namespace limn
