@@ -3,10 +3,13 @@
 // The bar on a terminal, and what is told where there is none.
 
 #include <algorithm>
+#include <stdexcept>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/ioctl.h>
+#include <unistd.h>
 
 #include "support/cli.h"
 
