@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <regex>
+#include <stdexcept>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

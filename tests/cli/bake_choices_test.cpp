@@ -95,7 +95,7 @@ TEST_F(Choices, FacesWithoutTextureCoordinatesAreNamedAndTheOthersBaked) {
     EXPECT_EQ(Report()["texels_covered"], 48 * 48);
     ExpectError(BakeAloud(mesh, "b.exr", {"--groups", "inner"}), 3, "have no texture coordinates");
     ASSERT_EQ(Limn({"info", mesh, "--json"}).status, 0);
-    json const info = json::parse(Limn({"info", mesh, "--json"}).out);
+    json const info = ParseJson(Limn({"info", mesh, "--json"}).out);
     EXPECT_EQ(info["uv"]["present"], true);
     EXPECT_EQ(info["uv"]["faces_without"], 1);
 }
@@ -119,7 +119,7 @@ TEST_F(Choices, MoreThanAHundredTilesAreBakedIfTheyAreNamed) {
     std::string const error = ExpectError(BakeAloud(mesh, "a.<UDIM>.exr"), 2, "--tiles");
     EXPECT_TRUE(Contains(error, "more than 100 tiles")) << error;
     EXPECT_TRUE(Contains(error, "face 0 (line 9)")) << error;
-    json const info = json::parse(Limn({"info", mesh, "--json"}).out);
+    json const info = ParseJson(Limn({"info", mesh, "--json"}).out);
     EXPECT_EQ(info["uv"]["tiles"].size(), 110u);
     ASSERT_EQ(BakeAloud(mesh, "a.<UDIM>.exr", {"--tiles", "1001-1003,1101"}).status, 0);
     EXPECT_EQ(Report()["tiles"], json({1001, 1002, 1003, 1101}));

@@ -7,7 +7,9 @@
 #include <regex>
 #include <set>
 
-#include <OpenImageIO/imageio.h>
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfTiledInputFile.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -16,6 +18,7 @@
 #include "engine/images/exr_writer.h"
 #include "engine/io/mesh_writer.h"
 #include "support/cli.h"
+#include "support/exr_level.h"
 
 namespace limn {
 namespace {
@@ -178,22 +181,21 @@ struct Image {
 };
 
 Image ReadImage(std::string const& path) {
-    auto const input = OIIO::ImageInput::open(path);
+    Imf::TiledInputFile input(path.c_str());
     Image image;
-    for (int level = 0; input && input->seek_subimage(0, level); ++level) {
-        OIIO::ImageSpec const spec = input->spec();
-        image.form += fmt::format("{}x{} {}", spec.width, spec.height,
-                                  spec.get_string_attribute("compression").c_str());
-        for (int c = 0; c < spec.nchannels; ++c) {
-            image.form += fmt::format(" {}:{}", spec.channelnames[static_cast<size_t>(c)],
-                                      spec.channelformat(c).c_str());
-        }
-        std::vector<float> pixels(spec.image_pixels() * static_cast<size_t>(spec.nchannels));
-        EXPECT_TRUE(
-            input->read_image(0, level, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()));
+    image.form = fmt::format("compression {}", static_cast<int>(input.header().compression()));
+    Words channels;
+    auto const& list = input.header().channels();
+    for (auto channel = list.begin(); channel != list.end(); ++channel) {
+        channels.push_back(channel.name());
+        image.form +=
+            fmt::format(" {}:{}", channel.name(), static_cast<int>(channel.channel().type));
+    }
+    for (int level = 0; level < input.numLevels(); ++level) {
+        image.form += fmt::format(" {}x{}", input.levelWidth(level), input.levelHeight(level));
+        auto const pixels = test::ReadLevel(input, level, channels);
         image.pixels.insert(image.pixels.end(), pixels.begin(), pixels.end());
     }
-    EXPECT_FALSE(image.form.empty()) << path;
     return image;
 }
 

@@ -187,7 +187,7 @@ TEST_F(CliDifferential, MeasureTellsAllAndWritesWhatIsAskedFor) {
             Limn({"measure", Mesh("icosa"), "--scheme", "loop", "--surface", surface, "-o",
                   folder / surface, "--highlight", "--picture", "--view", "0,0,1"});
         ASSERT_EQ(outcome.status, 0) << outcome.err;
-        json const found = json::parse(outcome.out);
+        json const found = ParseJson(outcome.out);
         for (char const* key : {"area", "volume", "euler_characteristic", "thin_plate_energy",
                                 "thin_plate_energy_area"}) {
             EXPECT_TRUE(found[key].is_number()) << key;
@@ -204,7 +204,7 @@ TEST_F(CliDifferential, MeasureTellsAllAndWritesWhatIsAskedFor) {
         }
     }
     auto const open = Limn({"measure", Mesh("gridholetri"), "--surface", "mesh"});
-    EXPECT_TRUE(json::parse(open.out)["volume"].is_null());
+    EXPECT_TRUE(ParseJson(open.out)["volume"].is_null());
     ExpectError(Limn({"measure", Mesh("icosa"), "--highlight"}), 2, "name their beginning with -o");
     ExpectError(
         Limn({"measure", Mesh("icosa"), "--picture", "-o", folder / "a", "--view", "0,0,0"}), 2,

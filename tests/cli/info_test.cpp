@@ -14,7 +14,7 @@ using namespace test::cli;
 TEST_F(Cli, InfoJsonHasTheSpecifiedKeys) {
     Outcome const outcome = Limn({"info", Shape("catmark_cube_creases0"), "--json"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
-    json const info = json::parse(outcome.out);
+    json const info = ParseJson(outcome.out);
     EXPECT_EQ(info["vertices"], 8);
     EXPECT_EQ(info["edges"], 12);
     EXPECT_EQ(info["faces"], 6);
@@ -40,7 +40,7 @@ TEST_F(Cli, InfoJsonHasTheSpecifiedKeys) {
 
 TEST_F(Cli, InfoJsonNamesDefectsWithTheirLine) {
     json const info =
-        json::parse(Limn({"info", test::DataPath("malformed/nonmanifold_edge.obj"), "--json"}).out);
+        ParseJson(Limn({"info", test::DataPath("malformed/nonmanifold_edge.obj"), "--json"}).out);
     EXPECT_TRUE(info["genus"].is_null());
     ASSERT_EQ(info["defects"].size(), 1u);
     for (char const* key : {"kind", "element", "line", "message"})
@@ -50,7 +50,7 @@ TEST_F(Cli, InfoJsonNamesDefectsWithTheirLine) {
 TEST_F(Cli, InfoTellsTheEffectiveOptions) {
     // The command line overrides the file's tags; catmark_edgenone has t interpolateboundary 0.
     auto const options = [](Words const& more) {
-        return json::parse(Limn(Words{"info", Shape("catmark_edgenone"), "--json"} + more).out)
+        return ParseJson(Limn(Words{"info", Shape("catmark_edgenone"), "--json"} + more).out)
             .at("options");
     };
     EXPECT_EQ(options({})["boundary"], "none");

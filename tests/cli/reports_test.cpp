@@ -178,7 +178,7 @@ TEST_F(Reports, GoToStdoutWhereTheVerbWritesFilesOnly) {
             continue;
         }
         EXPECT_EQ(outcome.status, 0) << outcome.err;
-        EXPECT_EQ(json::parse(outcome.out)["command"], verb);
+        EXPECT_EQ(ParseJson(outcome.out)["command"], verb);
     }
 }
 

@@ -8,8 +8,10 @@
 #include <memory>
 #include <thread>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "engine/io/file.h"
 #include "support/cli.h"

@@ -2,6 +2,7 @@
 //
 // Bakes of what limn smooth makes.
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/images/exr_lookup.h"

@@ -2,6 +2,7 @@
 //
 // What limn smooth keeps, and what it warns of: collapse, volume, creases, height fields.
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 

@@ -2,6 +2,7 @@
 //
 // limn smooth from outside.
 
+#include <algorithm>
 #include <filesystem>
 
 #include <fmt/format.h>

@@ -2,6 +2,7 @@
 //
 // Widths of limn smooth: on edges, from tables and from images.
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>

@@ -74,7 +74,7 @@ TEST_F(Streams, ReportsGoThroughWhatIsNoFile) {
               0);
     EXPECT_TRUE(fs::is_character_file(folder / "r.json"));
     Outcome const shown = Limn({"refine", cube, "-o", folder / "a.obj", "--report", "/dev/stdout"});
-    EXPECT_EQ(json::parse(shown.out)["command"], "refine");
+    EXPECT_EQ(ParseJson(shown.out)["command"], "refine");
     ExpectError(Limn({"refine", cube, "-o", folder / "a.obj", "--report", "/dev/full"}), 5,
                 "'/dev/full' cannot be written: No space left on device");
 }

@@ -25,7 +25,7 @@ void PrintTo(VerbRun const& run, std::ostream* out) {
     *out << run.verb;
 }
 
-std::vector<VerbRun> const kRuns{
+std::vector<VerbRun> const kVerbRuns{
     {"eval",
      {"MESH", "--at", "PLACES", "-o", "OUT/a.csv"},
      {"reading", "evaluating places", "writing"}},
@@ -100,11 +100,11 @@ TEST_P(CliVerbose, TellsPhasesAndSecondsAndChangesNoByteOfTheOutput) {
     EXPECT_FALSE(folder.List().empty() && outcome.out.empty()) << "nothing to compare";
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, CliVerbose, testing::ValuesIn(kRuns));
+INSTANTIATE_TEST_SUITE_P(Of, CliVerbose, testing::ValuesIn(kVerbRuns));
 
 TEST_F(Cli, VerboseIsTriedWithEveryVerb) {
     for (std::string const& verb : ListVerbs())
-        EXPECT_TRUE(std::ranges::any_of(kRuns, [&](VerbRun const& run) {
+        EXPECT_TRUE(std::ranges::any_of(kVerbRuns, [&](VerbRun const& run) {
             return run.verb == verb;
         })) << verb;
 }

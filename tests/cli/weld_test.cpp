@@ -56,7 +56,7 @@ protected:
 TEST_F(CutCube, IsToldOfByInfoInTextAndJson) {
     std::string const mesh = MakeCutCube();
     EXPECT_TRUE(Contains(Limn({"info", mesh}).out, kWarning));
-    json const defects = json::parse(Limn({"info", mesh, "--json"}).out)["defects"];
+    json const defects = ParseJson(Limn({"info", mesh, "--json"}).out)["defects"];
     ASSERT_EQ(defects.size(), 1u);
     EXPECT_EQ(defects[0]["kind"], "coincident_vertices");
     EXPECT_EQ(defects[0]["count"], 24);
@@ -90,14 +90,14 @@ TEST_F(CutCube, IsWholeWithWeldInEveryVerb) {
 
 TEST_F(CutCube, WeldedIsAClosedBodyForInfo) {
     std::string const mesh = MakeCutCube();
-    json const info = json::parse(Limn({"info", mesh, "--json", "--weld", "0"}).out);
+    json const info = ParseJson(Limn({"info", mesh, "--json", "--weld", "0"}).out);
     EXPECT_EQ(info["vertices"], 8);
     EXPECT_EQ(info["genus"], 0);
     EXPECT_EQ(info["boundary_loops"], 0);
     EXPECT_TRUE(info["defects"].empty());
     EXPECT_TRUE(info["uv"]["present"]);
     EXPECT_EQ(info["weld"]["joined"], 16);
-    EXPECT_TRUE(json::parse(Limn({"info", mesh, "--json"}).out)["weld"].is_null());
+    EXPECT_TRUE(ParseJson(Limn({"info", mesh, "--json"}).out)["weld"].is_null());
     EXPECT_TRUE(Contains(Limn({"info", mesh, "--weld", "0"}).out,
                          "within 0: 16 vertices joined to others, 0 left apart"));
 }

@@ -45,6 +45,16 @@ engine::Scene MakeTriangleTorus(int n, int m);
 
 engine::Scene MakeCube();
 
+/// What each corner has of a list with `length` numbers per vertex.
+template <class T>
+std::vector<T> AtCorners(engine::Scene const& scene, std::vector<T> const& values, size_t length) {
+    std::vector<T> atCorners;
+    for (Index vertex : scene.cage.faceVertices) {
+        for (size_t c = 0; c < length; ++c) atCorners.push_back(values[vertex * length + c]);
+    }
+    return atCorners;
+}
+
 /// Names of all OBJ files of a folder of tests/data, sorted.
 std::vector<std::string> ListData(std::string const& folder);
 

@@ -4,11 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <vector>
-
-#include <OpenImageIO/imageio.h>
 
 namespace limn::test {
 
@@ -25,28 +22,10 @@ struct Picture {
     }
 
     /// The colours in a part of it.
-    std::set<Colour> ListColours(int x, int y, int columns, int rows) const {
-        std::set<Colour> colours;
-        for (int j = y; j < y + rows; ++j) {
-            for (int i = x; i < x + columns; ++i) colours.insert(At(i, j));
-        }
-        return colours;
-    }
+    std::set<Colour> ListColours(int x, int y, int columns, int rows) const;
 };
 
 /// \throws std::runtime_error  if it is no whole PNG of three channels of 8 bits
-inline Picture ReadPng(std::string const& path) {
-    auto const input = OIIO::ImageInput::open(path);
-    if (!input) throw std::runtime_error(path + ": " + OIIO::geterror());
-    OIIO::ImageSpec const& spec = input->spec();
-    if (input->format_name() != std::string("png") || spec.nchannels != 3 ||
-        spec.format != OIIO::TypeDesc::UINT8)
-        throw std::runtime_error(path + " is no PNG of three bytes a pixel");
-    Picture picture{spec.width, spec.height, {}};
-    picture.pixels.resize(static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height));
-    if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, picture.pixels.data()))
-        throw std::runtime_error(path + ": " + input->geterror());
-    return picture;
-}
+Picture ReadPng(std::string const& path);
 
 }  // namespace limn::test

@@ -21,7 +21,7 @@ namespace {
 using engine::BakeOptions;
 using engine::BakeReport;
 
-BakeOptions MakeOptions(std::string const& pattern, std::vector<std::string> maps, int size) {
+BakeOptions MakeFileOptions(std::string const& pattern, std::vector<std::string> maps, int size) {
     BakeOptions options;
     options.pattern = pattern;
     options.maps = std::move(maps);
@@ -40,7 +40,7 @@ BakeReport RunBake(engine::Scene const& scene, BakeOptions const& options) {
 TEST(Bake, TexelsHoldTheLimitSurface) {
     test::TemporaryFolder const folder;
     engine::Scene const torus = test::MakeTorus(12, 8);
-    auto options = MakeOptions(folder / "{map}.exr", {"position", "normal", "curvature"}, 48);
+    auto options = MakeFileOptions(folder / "{map}.exr", {"position", "normal", "curvature"}, 48);
     // Straight texture coordinates, so that u and v are the parameters themselves.
     engine::Scene linear = torus;
     linear.cage.options.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_ALL);
@@ -79,8 +79,8 @@ TEST(Bake, FilesDoNotDependOnThreads) {
     std::vector<std::string> sums;
     for (int threads : {1, 3}) {
         test::TemporaryFolder const folder;
-        auto options = MakeOptions(folder / "{map}.<UDIM>.exr",
-                                   {"mean", "normal", "principal-direction", "stretch"}, 200);
+        auto options = MakeFileOptions(folder / "{map}.<UDIM>.exr",
+                                       {"mean", "normal", "principal-direction", "stretch"}, 200);
         options.isHalf = options.hasMips = options.hasCoverage = true;
         options.samplesPerSide = 2;
         tbb::task_arena arena(threads);
@@ -100,7 +100,7 @@ TEST(Bake, SkipsNoFileOfOtherArrays) {
     moved[0] += 0.1;
     auto const other = model.WithPoints(moved);
     auto options =
-        MakeOptions(folder / "{map}.exr", {"mean", "displacement", "tension", "field"}, 16);
+        MakeFileOptions(folder / "{map}.exr", {"mean", "displacement", "tension", "field"}, 16);
     options.skipsExisting = true;
     options.against = options.rest = model;
     options.field.emplace(static_cast<size_t>(model.GetLevel().GetNumEdges()), 1.0);
@@ -143,7 +143,7 @@ TEST(Bake, TakesManyFacesOnAnEdge) {
         scene.cage.scheme = scheme;
         scene.cage.fvarChannels.push_back({8, scene.cage.faceVertices});
         scene.uvs = uvs;
-        auto const report = RunBake(scene, MakeOptions(folder / "a.exr", {"normal"}, 16));
+        auto const report = RunBake(scene, MakeFileOptions(folder / "a.exr", {"normal"}, 16));
         EXPECT_GT(report.texelsCovered, 40u);
         engine::ExrLookup lookup;
         for (int x = 0; x < 16; ++x) {
@@ -162,15 +162,15 @@ TEST(Bake, BandsAddUpToTheWayFromTheSmoothBase) {
     engine::Job job;
     base.positions = engine::SplitIntoBands(engine::Model::Build(spot), 3, {}, job).bands[0];
     for (bool const isVector : {false, true}) {
-        auto bands = MakeOptions(folder / "bands.exr", {"bands"}, 64);
+        auto bands = MakeFileOptions(folder / "bands.exr", {"bands"}, 64);
         bands.bands = 3;
         bands.isVector = isVector;
         RunBake(spot, bands);
-        auto way = MakeOptions(folder / "way.exr", {"displacement"}, 64);
+        auto way = MakeFileOptions(folder / "way.exr", {"displacement"}, 64);
         way.against = engine::Model::Build(base);
         way.isVector = isVector;
         RunBake(spot, way);
-        auto both = MakeOptions(folder / "both.{map}.exr", {"bands", "displacement"}, 64);
+        auto both = MakeFileOptions(folder / "both.{map}.exr", {"bands", "displacement"}, 64);
         both.against = engine::Model::Build(base);
         both.isVector = isVector;
         both.bands = 3;
@@ -211,10 +211,10 @@ TEST(Bake, DisplacementIsTheDifferenceToTheOtherLimit) {
     engine::Scene const torus = test::MakeTorus(12, 8);
     engine::Scene moved = torus;
     for (size_t i = 2; i < moved.positions.size(); i += 3) moved.positions[i] += 0.25;
-    auto options = MakeOptions(folder / "{map}.exr", {"displacement", "normal"}, 32);
+    auto options = MakeFileOptions(folder / "{map}.exr", {"displacement", "normal"}, 32);
     options.against = engine::Model::Build(moved);
     RunBake(torus, options);
-    auto vectors = MakeOptions(folder / "vector.exr", {"displacement"}, 32);
+    auto vectors = MakeFileOptions(folder / "vector.exr", {"displacement"}, 32);
     vectors.against = engine::Model::Build(moved);
     vectors.isVector = true;
     RunBake(torus, vectors);
@@ -238,12 +238,12 @@ TEST(Bake, TangentSpaceKeepsLengthAndNormalPart) {
     engine::Scene moved = torus;
     for (size_t i = 0; i < moved.positions.size(); ++i)
         moved.positions[i] += i % 3 == 0 ? 0.2 : 0.1;
-    auto options = MakeOptions(folder / "v.exr", {"displacement"}, 32);
+    auto options = MakeFileOptions(folder / "v.exr", {"displacement"}, 32);
     options.against = engine::Model::Build(moved);
     options.isVector = true;
     options.space = engine::VectorSpace::Tangent;
     RunBake(torus, options);
-    auto scalar = MakeOptions(folder / "s.exr", {"displacement"}, 32);
+    auto scalar = MakeFileOptions(folder / "s.exr", {"displacement"}, 32);
     scalar.against = engine::Model::Build(moved);
     RunBake(torus, scalar);
     engine::ExrLookup lookup;
@@ -266,8 +266,8 @@ TEST(Bake, PrimvarsAreSubdividedLikePositions) {
         torus.primvars[0].values.push_back(1.0f);
         torus.primvars[1].values.push_back(static_cast<float>(torus.positions[v + 2]));
     }
-    RunBake(torus,
-            MakeOptions(folder / "{map}.exr", {"position", "primvar:color", "primvar:height"}, 32));
+    RunBake(torus, MakeFileOptions(folder / "{map}.exr",
+                                   {"position", "primvar:color", "primvar:height"}, 32));
     engine::ExrLookup lookup;
     for (int x = 0; x < 32; x += 3) {
         auto const position = lookup.Look(folder / "position.exr", {"R", "G", "B"}, x, 11);
@@ -283,7 +283,7 @@ TEST(Bake, PrimvarsAreSubdividedLikePositions) {
 TEST(Bake, StretchAveragesToOne) {
     test::TemporaryFolder const folder;
     engine::Scene const torus = test::MakeTorus(12, 8);
-    RunBake(torus, MakeOptions(folder / "s.exr", {"stretch"}, 64));
+    RunBake(torus, MakeFileOptions(folder / "s.exr", {"stretch"}, 64));
     engine::ExrLookup lookup;
     double sum = 0.0;
     for (int y = 0; y < 64; ++y) {
@@ -296,8 +296,8 @@ TEST(Bake, StretchAveragesToOne) {
 TEST(Bake, EncodingScalesAndOffsets) {
     test::TemporaryFolder const folder;
     engine::Scene const torus = test::MakeTorus(12, 8);
-    RunBake(torus, MakeOptions(folder / "plain.exr", {"normal"}, 16));
-    auto options = MakeOptions(folder / "encoded.exr", {"normal"}, 16);
+    RunBake(torus, MakeFileOptions(folder / "plain.exr", {"normal"}, 16));
+    auto options = MakeFileOptions(folder / "encoded.exr", {"normal"}, 16);
     options.encoding = engine::Encoding{0.5, 0.5};
     RunBake(torus, options);
     engine::ExrLookup lookup;
@@ -309,8 +309,8 @@ TEST(Bake, EncodingScalesAndOffsets) {
 TEST(Bake, SupersamplingIsTheMeanOfAFinerBake) {
     test::TemporaryFolder const folder;
     engine::Scene const torus = test::MakeTorus(12, 8);
-    RunBake(torus, MakeOptions(folder / "fine.exr", {"mean"}, 64));
-    auto options = MakeOptions(folder / "coarse.exr", {"mean"}, 32);
+    RunBake(torus, MakeFileOptions(folder / "fine.exr", {"mean"}, 64));
+    auto options = MakeFileOptions(folder / "coarse.exr", {"mean"}, 32);
     options.samplesPerSide = 2;
     RunBake(torus, options);
     engine::ExrLookup lookup;
@@ -325,7 +325,7 @@ TEST(Bake, SupersamplingIsTheMeanOfAFinerBake) {
 TEST(Bake, TilesAreThoseWithTexels) {
     test::TemporaryFolder const folder;
     auto const report = RunBake(test::LoadAsset("udim/grid_with_udims.obj"),
-                                MakeOptions(folder / "n.<UDIM>.exr", {"normal"}, 32));
+                                MakeFileOptions(folder / "n.<UDIM>.exr", {"normal"}, 32));
     EXPECT_EQ(report.tiles.size(), 9u);
     EXPECT_EQ(report.tiles.front(), 1001);
     EXPECT_EQ(report.tiles.back(), 1056);
@@ -335,7 +335,7 @@ TEST(Bake, TilesAreThoseWithTexels) {
 TEST(Bake, AMeshWithoutUVsIsRefused) {
     test::TemporaryFolder const folder;
     EXPECT_EQ(test::CodeOf([&] {
-                  RunBake(test::MakeCube(), MakeOptions(folder / "n.exr", {"normal"}, 16));
+                  RunBake(test::MakeCube(), MakeFileOptions(folder / "n.exr", {"normal"}, 16));
               }),
               ErrorCode::BadMesh);
     EXPECT_TRUE(folder.List().empty());
@@ -346,7 +346,7 @@ TEST(Bake, GaussBonnetHoldsOnClosedMeshes) {
     test::TemporaryFolder const folder;
     for (auto const& [scene, expected] : {std::pair{test::MakeTorus(24, 16), 0.0},
                                           std::pair{test::LoadSpot(), 4 * std::acos(-1.0)}}) {
-        auto options = MakeOptions(folder / "{mesh}.{map}.<UDIM>.exr", {"position"}, 512);
+        auto options = MakeFileOptions(folder / "{mesh}.{map}.<UDIM>.exr", {"position"}, 512);
         auto const report = RunBake(scene, options);
         engine::Job job;
         auto const audit = engine::Audit(engine::Model::Build(scene), options, report, {}, job);
@@ -362,7 +362,7 @@ TEST(Bake, GaussBonnetHoldsOnClosedMeshes) {
 TEST(Bake, SeamsOfPositionsCloseWithinATexel) {
     test::TemporaryFolder const folder;
     engine::Scene const torus = test::MakeTorus(24, 16);
-    auto const options = MakeOptions(folder / "{map}.exr", {"position"}, 256);
+    auto const options = MakeFileOptions(folder / "{map}.exr", {"position"}, 256);
     auto const report = RunBake(torus, options);
     engine::Job job;
     auto const audit = engine::Audit(engine::Model::Build(torus), options, report, {}, job);

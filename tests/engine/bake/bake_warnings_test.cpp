@@ -22,7 +22,7 @@ using engine::BakeOptions;
 using engine::Scene;
 using Words = std::vector<std::string>;
 
-BakeOptions MakeOptions(Words maps, int size = 64) {
+BakeOptions MakeMapOptions(Words maps, int size = 64) {
     BakeOptions options;
     options.maps = std::move(maps);
     options.width = options.height = size;
@@ -48,7 +48,7 @@ std::string WarningOf(Scene scene, BakeOptions const& options) {
 }
 
 TEST(BakeWarnings, NothingIsSaidOfASoundMesh) {
-    auto options = MakeOptions({"position", "normal", "mean", "overlap"});
+    auto options = MakeMapOptions({"position", "normal", "mean", "overlap"});
     for (char const* mesh : {"udim/grid_with_udims.obj", "udim/plane_3_udims.obj"})
         EXPECT_EQ(WarningsOf(test::LoadAsset(mesh), options), Words{}) << mesh;
     for (int size : {64, 300, 1024}) {
@@ -91,7 +91,7 @@ Scene MakeTwoTori() {
     return two;
 }
 
-void PutIntoGroups(Scene& scene, engine::GroupKind kind, Words names, Index firstOfSecond) {
+void SplitIntoGroups(Scene& scene, engine::GroupKind kind, Words names, Index firstOfSecond) {
     auto& groups = scene.groups[static_cast<size_t>(kind)];
     groups.names = std::move(names);
     for (Index face = 0; face < scene.cage.GetNumFaces(); ++face)
@@ -99,7 +99,7 @@ void PutIntoGroups(Scene& scene, engine::GroupKind kind, Words names, Index firs
 }
 
 TEST(BakeWarnings, AnOverlapIsSaidWithItsShareAndItsFirstFaces) {
-    std::string const warning = WarningOf(MakeTwoTori(), MakeOptions({"position"}));
+    std::string const warning = WarningOf(MakeTwoTori(), MakeMapOptions({"position"}));
     EXPECT_TRUE(Contains(warning, "4096 of 4096 covered texels (100 %)")) << warning;
     EXPECT_TRUE(Contains(warning, "first face 0 and face 24;")) << warning;
     EXPECT_FALSE(Contains(warning, "different")) << warning;
@@ -111,8 +111,8 @@ TEST(BakeWarnings, WhereGroupsOverlapTheyAreTheWayOut) {
                                      {engine::GroupKind::Group, "groups"},
                                      {engine::GroupKind::Object, "objects"}}) {
         Scene scene = MakeTwoTori();
-        PutIntoGroups(scene, kind, {"red", "blue"}, 24);
-        std::string const warning = WarningOf(std::move(scene), MakeOptions({"position"}));
+        SplitIntoGroups(scene, kind, {"red", "blue"}, 24);
+        std::string const warning = WarningOf(std::move(scene), MakeMapOptions({"position"}));
         EXPECT_TRUE(Contains(warning, std::string("all of them under faces of different ") + word +
                                           ", such as red and blue"))
             << warning;
@@ -127,18 +127,18 @@ TEST(BakeWarnings, GroupsThatDoNotOverlapAreNoWayOut) {
         groups.names = {"left", "right"};
         for (int face = 0; face < 48; ++face) groups.faceGroup.push_back(face % 24 >= 12);
     }
-    std::string const warning = WarningOf(scene, MakeOptions({"position"}));
+    std::string const warning = WarningOf(scene, MakeMapOptions({"position"}));
     EXPECT_FALSE(Contains(warning, "different")) << warning;
     // Of one group alone each texel of its half lies under two faces all the same.
-    auto options = MakeOptions({"position"});
+    auto options = MakeMapOptions({"position"});
     options.groups = {"left"};
     EXPECT_TRUE(Contains(WarningOf(scene, options), "(100 %)"));
 }
 
 TEST(BakeWarnings, ABakeOfOneGroupOfTwoHasNoOverlap) {
     Scene scene = MakeTwoTori();
-    PutIntoGroups(scene, engine::GroupKind::Material, {"red", "blue"}, 24);
-    auto options = MakeOptions({"position"});
+    SplitIntoGroups(scene, engine::GroupKind::Material, {"red", "blue"}, 24);
+    auto options = MakeMapOptions({"position"});
     options.groups = {"blue"};
     EXPECT_EQ(WarningsOf(std::move(scene), options), Words{});
 }
@@ -148,11 +148,11 @@ TEST(BakeWarnings, AreTheSameForAnyNumberOfThreadsAndSamples) {
     Words warnings;
     for (int threads : {1, 4}) {
         test::WithThreads(threads, [&] {
-            warnings.push_back(WarningOf(scene, MakeOptions({"position"}, 1000)));
+            warnings.push_back(WarningOf(scene, MakeMapOptions({"position"}, 1000)));
         });
     }
     EXPECT_EQ(warnings[0], warnings[1]);
-    auto options = MakeOptions({"position"});
+    auto options = MakeMapOptions({"position"});
     options.samplesPerSide = 2;
     EXPECT_TRUE(Contains(WarningOf(MakeTwoTori(), options), "(100 %)"));
 }
@@ -177,7 +177,7 @@ Scene MakeSheet() {
 }
 
 TEST(BakeWarnings, WhatScalarDisplacementLeavesOutIsSaid) {
-    auto options = MakeOptions({"displacement"});
+    auto options = MakeMapOptions({"displacement"});
     options.against = engine::Model::Build(Move(MakeSheet(), 0.3, -0.4, 1.2));
     test::Listener listener;
     engine::Job job(listener.MakeHost());
@@ -194,7 +194,7 @@ TEST(BakeWarnings, WhatScalarDisplacementLeavesOutIsSaid) {
 }
 
 TEST(BakeWarnings, WholeVectorsLeaveNothingOut) {
-    auto options = MakeOptions({"displacement"});
+    auto options = MakeMapOptions({"displacement"});
     options.against = engine::Model::Build(Move(MakeSheet(), 0.3, -0.4, 1.2));
     options.isVector = true;
     EXPECT_EQ(WarningsOf(MakeSheet(), options), Words{});
@@ -202,7 +202,7 @@ TEST(BakeWarnings, WholeVectorsLeaveNothingOut) {
 
 TEST(BakeWarnings, AFewPartsOfAHundredMayBeLeftOut) {
     for (auto const& [aside, numWarnings] : {std::pair{0.04, 0u}, {0.06, 1u}}) {
-        auto options = MakeOptions({"displacement"});
+        auto options = MakeMapOptions({"displacement"});
         options.against = engine::Model::Build(Move(MakeSheet(), aside, 0.0, 1.0));
         EXPECT_EQ(WarningsOf(MakeSheet(), options).size(), numWarnings) << aside;
     }
@@ -217,7 +217,7 @@ Scene MakeTorusAt(double distance) {
 }
 
 TEST(BakeWarnings, PositionsFarFromTheOriginAreTooCoarse) {
-    auto options = MakeOptions({"position", "normal"});
+    auto options = MakeMapOptions({"position", "normal"});
     EXPECT_EQ(WarningsOf(MakeTorusAt(10.0), options), Words{});
     std::string const warning = WarningOf(MakeTorusAt(1000.0), options);
     EXPECT_TRUE(Contains(warning, "positions of single precision are 6.10352e-05 apart"))
@@ -225,11 +225,11 @@ TEST(BakeWarnings, PositionsFarFromTheOriginAreTooCoarse) {
     EXPECT_FALSE(Contains(warning, "halfMaps")) << warning;
     options.origin = engine::AutomaticOrigin{};
     EXPECT_EQ(WarningsOf(MakeTorusAt(1000.0), options), Words{});
-    EXPECT_EQ(WarningsOf(MakeTorusAt(1000.0), MakeOptions({"normal"})), Words{});
+    EXPECT_EQ(WarningsOf(MakeTorusAt(1000.0), MakeMapOptions({"normal"})), Words{});
 }
 
 TEST(BakeWarnings, PositionsInHalfAreTooCoarseEarlier) {
-    auto options = MakeOptions({"position", "normal"});
+    auto options = MakeMapOptions({"position", "normal"});
     options.isHalf = true;
     EXPECT_EQ(WarningsOf(MakeTorusAt(0.0), options), Words{});
     std::string const warning = WarningOf(MakeTorusAt(100.0), options);
@@ -257,7 +257,7 @@ TEST(BakeWarnings, FacesWithoutTextureCoordinatesAreCountedAndTheFirstIsNamed) {
     test::Listener listener;
     engine::Job job(listener.MakeHost());
     auto const report =
-        engine::BakeToMemory(engine::Model::Build(scene), MakeOptions({"mean"}), job).report;
+        engine::BakeToMemory(engine::Model::Build(scene), MakeMapOptions({"mean"}), job).report;
     ASSERT_EQ(listener.warnings.size(), 1u);
     EXPECT_TRUE(Contains(listener.warnings[0], "3 of 24 faces have no texture coordinates"));
     EXPECT_TRUE(Contains(listener.warnings[0], "first face 3"));

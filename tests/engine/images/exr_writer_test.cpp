@@ -3,12 +3,11 @@
 
 #include <filesystem>
 
-#include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfTiledInputFile.h>
 #include <gtest/gtest.h>
 
+#include "support/exr_level.h"
 #include "support/files.h"
 
 namespace limn {
@@ -59,21 +58,6 @@ void WriteLevel(ExrWriter& writer, ExrSpec const& spec, int level) {
     }
 }
 
-/// By OpenEXR's own reader, R, G and B of one pixel after another.
-std::vector<float> ReadLevel(Imf::TiledInputFile& input, int level) {
-    int const w = input.levelWidth(level), h = input.levelHeight(level);
-    std::vector<float> pixels(static_cast<size_t>(3 * w * h));
-    Imf::FrameBuffer buffer;
-    char const* const names[3] = {"R", "G", "B"};
-    for (size_t c = 0; c < 3; ++c) {
-        buffer.insert(names[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(pixels.data() + c),
-                                           12, 12 * static_cast<size_t>(w)));
-    }
-    input.setFrameBuffer(buffer);
-    input.readTiles(0, input.numXTiles(level) - 1, 0, input.numYTiles(level) - 1, level);
-    return pixels;
-}
-
 // What is packed is what OpenEXR's own reader finds, on every level, at sizes that are no multiple
 // of a tile.
 TEST_P(ExrWriterAs, ReadsBackThroughOpenExr) {
@@ -102,7 +86,7 @@ TEST_P(ExrWriterAs, ReadsBackThroughOpenExr) {
     };
     for (int level = 0; level < spec.GetNumLevels(); ++level) {
         int const w = input.levelWidth(level);
-        std::vector<float> const pixels = ReadLevel(input, level);
+        std::vector<float> const pixels = test::ReadLevel(input, level, spec.channels);
         for (size_t i = 0; i < pixels.size(); ++i) {
             int const pixel = static_cast<int>(i / 3), c = static_cast<int>(i % 3);
             ASSERT_NEAR(pixels[i], ValueAt(level, c, pixel % w, pixel / w), findTolerance(i % 3));

@@ -5,27 +5,26 @@
 
 #include "support/errors.h"
 #include "support/files.h"
+#include "support/readers.h"
 
 namespace limn {
 namespace {
 
-std::string const kQuad = "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
-
 TEST(MeshReader, ChoosesByEndingAndThenByFirstBytes) {
     test::TemporaryFolder const folder;
     for (std::string const name : {"a.off", "a.OFF", "a.mesh"}) {
-        EXPECT_EQ(engine::ReadMesh(folder.Write(name, kQuad)).cage.numVertices, 4) << name;
+        EXPECT_EQ(engine::ReadMesh(folder.Write(name, test::kOffQuad)).cage.numVertices, 4) << name;
     }
     for (std::string const name : {"a.obj", "a.OBJ", "a.PLY"}) {  // which contradict
-        EXPECT_THROW(engine::ReadMesh(folder.Write(name, kQuad)), Error) << name;
+        EXPECT_THROW(engine::ReadMesh(folder.Write(name, test::kOffQuad)), Error) << name;
     }
 }
 
 TEST(MeshReader, KnowsNameAndChecksumOfTheFile) {
     test::TemporaryFolder const folder;
-    engine::Scene const scene = engine::ReadMesh(folder.Write("some.quad.off", kQuad));
+    engine::Scene const scene = engine::ReadMesh(folder.Write("some.quad.off", test::kOffQuad));
     EXPECT_EQ(scene.name, "some.quad");
-    // sha256sum of kQuad
+    // sha256sum of kOffQuad
     EXPECT_EQ(scene.sha256, "b6a8fcc3bd3d5d5ca0616db0b1004cf66e4735145d0ffd738cf1a93b7c767104");
 }
 

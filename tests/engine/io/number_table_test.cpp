@@ -8,6 +8,7 @@
 #include "support/errors.h"
 #include "support/files.h"
 #include "support/readers.h"
+#include "support/values.h"
 
 namespace limn {
 namespace {

@@ -14,16 +14,9 @@ namespace limn {
 namespace {
 
 using engine::Scene;
-
-Scene Parse(std::string const& text) {
-    Scene scene;
-    scene.path = "mesh.obj";
-    engine::ReadObj(text, scene);
-    return scene;
-}
-
-std::string const kQuadVertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-std::string const kQuad = kQuadVertices + "f 1 2 3 4\n";
+using test::kObjQuad;
+using test::kObjQuadVertices;
+using test::ParseObj;
 
 void ExpectSameMesh(Scene const& a, Scene const& b) {
     EXPECT_EQ(a.positions, b.positions);
@@ -40,7 +33,7 @@ void ExpectSameMesh(Scene const& a, Scene const& b) {
 // -------- geometry
 
 TEST(ObjReader, ReadsPositionsFacesAndTheirLines) {
-    Scene const scene = Parse(
+    Scene const scene = ParseObj(
         "# a comment\n\nmtllib x.mtl\nv 1 2 3\nv .5 -.5e1 +7 # here too\nv 4 5 6\nvn 0 0 1\nf 1 2 "
         "3\n");
     EXPECT_EQ(scene.positions, (std::vector<double>{1, 2, 3, 0.5, -5, 7, 4, 5, 6}));
@@ -52,7 +45,7 @@ TEST(ObjReader, ReadsPositionsFacesAndTheirLines) {
 
 TEST(ObjReader, NegativeIndicesCountBackFromTheirOwnLine) {
     // The first face sees 3 vertices, so -1 is vertex 2; the second sees 5, so -1 is vertex 4.
-    Scene const scene = Parse(
+    Scene const scene = ParseObj(
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf -3/-1 -2/-1 -1/-1\nv 0 0 1\nv 0 0 2\nvt 1 1\nf -1/-1 "
         "-2/-2 1/1\n");
     EXPECT_EQ(scene.cage.faceVertices, (std::vector<Index>{0, 1, 2, 4, 3, 0}));
@@ -61,8 +54,9 @@ TEST(ObjReader, NegativeIndicesCountBackFromTheirOwnLine) {
 
 TEST(ObjReader, CrlfLineEndsChangeNothing) {
     std::string const text =
-        kQuadVertices + "vt 0 0\nvt 1 0\nusemtl red\nf 1/1 2/2 3/2 4/1\nt crease 2/1/0 0 1 2.5\n";
-    Scene const unix = Parse(text), dos = Parse(test::WithCrlf(text));
+        kObjQuadVertices +
+        "vt 0 0\nvt 1 0\nusemtl red\nf 1/1 2/2 3/2 4/1\nt crease 2/1/0 0 1 2.5\n";
+    Scene const unix = ParseObj(text), dos = ParseObj(test::WithCrlf(text));
     ExpectSameMesh(unix, dos);
     EXPECT_EQ(dos.groups[0].names, (std::vector<std::string>{"red"}));
     EXPECT_EQ(dos.cage.creaseSharpness, unix.cage.creaseSharpness);
@@ -70,11 +64,11 @@ TEST(ObjReader, CrlfLineEndsChangeNothing) {
 }
 
 TEST(ObjReader, LastLineNeedsNoLineEnd) {
-    ExpectSameMesh(Parse(kQuad), Parse(kQuad.substr(0, kQuad.size() - 1)));
+    ExpectSameMesh(ParseObj(kObjQuad), ParseObj(kObjQuad.substr(0, kObjQuad.size() - 1)));
 }
 
 TEST(ObjReader, Utf8ByteOrderMarkHidesNoVertex) {
-    ExpectSameMesh(Parse(kQuad), Parse("\xef\xbb\xbf" + kQuad));
+    ExpectSameMesh(ParseObj(kObjQuad), ParseObj("\xef\xbb\xbf" + kObjQuad));
 }
 
 TEST(ObjReader, KeepsPolygonsOfAnySize) {
@@ -83,7 +77,7 @@ TEST(ObjReader, KeepsPolygonsOfAnySize) {
         text = fmt::format("v {} 0 0\n", i) + text;
         text += fmt::format(" {}", i);
     }
-    Scene const scene = Parse(text + "\n");
+    Scene const scene = ParseObj(text + "\n");
     EXPECT_EQ(scene.cage.faceSizes, (std::vector<Index>{3, 4, 7}));
     EXPECT_EQ(scene.cage.faceVertices.size(), 14u);
     EXPECT_NO_THROW(far_ext::Validate(scene.cage));
@@ -97,36 +91,37 @@ TEST(ObjReader, ALineOfAMegabyteIsOneFace) {
         face += fmt::format(" {:06}", i);
     }
     ASSERT_GT(face.size(), 1u << 20);
-    Scene const scene = Parse(text + face + "\n");
+    Scene const scene = ParseObj(text + face + "\n");
     ASSERT_EQ(scene.cage.faceSizes, (std::vector<Index>{kCorners}));
     EXPECT_EQ(scene.cage.faceVertices.back(), kCorners - 1);
 }
 
 TEST(ObjReader, NumbersDoNotDependOnTheLocale) {
     test::CommaLocale const commas;
-    Scene const scene = Parse("v 1.5 2.25 3.125\n" + kQuad);
+    Scene const scene = ParseObj("v 1.5 2.25 3.125\n" + kObjQuad);
     EXPECT_EQ(scene.positions[0], 1.5);
     EXPECT_EQ(scene.positions[2], 3.125);
 }
 
 TEST(ObjReader, AnyLineEndChangesNothing) {
     for (std::string const end : {"\r", "\n\r"}) {
-        Scene const other = Parse(std::regex_replace(kQuad + kQuad, std::regex("\n"), end));
-        ExpectSameMesh(Parse(kQuad + kQuad), other);
+        Scene const other =
+            ParseObj(std::regex_replace(kObjQuad + kObjQuad, std::regex("\n"), end));
+        ExpectSameMesh(ParseObj(kObjQuad + kObjQuad), other);
         EXPECT_EQ(other.faceLines, (std::vector<uint32_t>{5, 10}));
     }
 }
 
 TEST(ObjReader, LinesJoinedByBackslashesAreOneFaceAndKeepTheirNumbers) {
-    Scene const scene =
-        Parse(kQuadVertices + "f 1 2 \\\n 3\\\n4\n# C:\\\nf 1 2 3\nt crease \\\n2/1/0 0 1 2\n");
+    Scene const scene = ParseObj(kObjQuadVertices +
+                                 "f 1 2 \\\n 3\\\n4\n# C:\\\nf 1 2 3\nt crease \\\n2/1/0 0 1 2\n");
     EXPECT_EQ(scene.cage.faceVertices, (std::vector<Index>{0, 1, 2, 3, 0, 1, 2}));
     EXPECT_EQ(scene.faceLines, (std::vector<uint32_t>{5, 9}));
     EXPECT_EQ(scene.cage.creaseSharpness, (std::vector<float>{2}));
 }
 
 TEST(ObjReader, FreeFormGeometryIsNamedInOneWarning) {
-    Scene const scene = Parse(kQuad + "vp 0 0\ncstype bspline\ncurv 0 1 1 2\nvp 1 1\n");
+    Scene const scene = ParseObj(kObjQuad + "vp 0 0\ncstype bspline\ncurv 0 1 1 2\nvp 1 1\n");
     ASSERT_EQ(scene.warnings.size(), 1u);
     EXPECT_EQ(scene.warnings[0],
               "mesh.obj:6: curves and surfaces in free form have no effect (export polygons): "
@@ -141,9 +136,9 @@ TEST(ObjReader, WhatStandsInOtherFilesIsNamed) {
 }
 
 TEST(ObjReader, WordsThatObjDoesNotHaveAreNamedInOneWarning) {
-    std::string text = kQuad + "vt 0 0\nvn 0 0 1\ns off\nl 1 2\np 1\nmtllib a.mtl\nvf 1 2 3\n";
+    std::string text = kObjQuad + "vt 0 0\nvn 0 0 1\ns off\nl 1 2\np 1\nmtllib a.mtl\nvf 1 2 3\n";
     for (int i = 0; i < 20; ++i) text += fmt::format("word{} 1\n", i);
-    Scene const scene = Parse(text);
+    Scene const scene = ParseObj(text);
     ASSERT_EQ(scene.warnings.size(), 1u);
     EXPECT_EQ(scene.warnings[0],
               "mesh.obj:12: OBJ has no such statement, so it has no effect: 21 lines ('vf', "
@@ -154,7 +149,7 @@ TEST(ObjReader, WordsThatObjDoesNotHaveAreNamedInOneWarning) {
 
 TEST(ObjReader, ColoursBehindPositionsBecomeAPrimvar) {
     Scene const scene =
-        Parse("v 0 0 0 1 0.5 0.25\nv 1 0 0 0 0 0 # black\nv 0 1 0 1 1 1\nf 1 2 3\n");
+        ParseObj("v 0 0 0 1 0.5 0.25\nv 1 0 0 0 0 0 # black\nv 0 1 0 1 1 1\nf 1 2 3\n");
     ASSERT_EQ(scene.primvars.size(), 1u);
     EXPECT_EQ(scene.primvars[0].name, "color");
     EXPECT_EQ(scene.primvars[0].numChannels, 3);
@@ -164,8 +159,8 @@ TEST(ObjReader, ColoursBehindPositionsBecomeAPrimvar) {
 
 TEST(ObjReader, ColoursMayHaveAnAlphaOrBeBytes) {
     auto const colours = [](std::string const& first) {
-        return Parse("v 0 0 0 " + first + "\nv 1 0 0 " + first + "\nv 0 1 0 " + first +
-                     "\nf 1 2 3\n")
+        return ParseObj("v 0 0 0 " + first + "\nv 1 0 0 " + first + "\nv 0 1 0 " + first +
+                        "\nf 1 2 3\n")
             .primvars.at(0);
     };
     EXPECT_EQ(colours("0 0.5 1 0.25").numChannels, 4);
@@ -174,20 +169,20 @@ TEST(ObjReader, ColoursMayHaveAnAlphaOrBeBytes) {
 }
 
 TEST(ObjReader, AWeightBehindAPositionIsNoColour) {
-    Scene const scene = Parse("v 0 0 0 1\nv 1 0 0 1.0\nv 0 1 0 0.5\nf 1 2 3\n");
+    Scene const scene = ParseObj("v 0 0 0 1\nv 1 0 0 1.0\nv 0 1 0 0.5\nf 1 2 3\n");
     EXPECT_TRUE(scene.primvars.empty());
     EXPECT_TRUE(scene.warnings.empty());
 }
 
 TEST(ObjReader, ColoursOfSomeVerticesAreLeftOutAndAWarningSaysSo) {
-    Scene const scene = Parse("v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    Scene const scene = ParseObj("v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     EXPECT_TRUE(scene.primvars.empty());
     ASSERT_EQ(scene.warnings.size(), 1u);
     EXPECT_NE(scene.warnings[0].find("2 of 3 vertices have no colour"), std::string::npos);
 }
 
 TEST(ObjReader, WhatIsNoColourBehindAPositionIsNamedInOneWarning) {
-    Scene const scene = Parse("v 0 0 0 what\nv 1 0 0 1 2\nv 0 1 0\nf 1 2 3\n");
+    Scene const scene = ParseObj("v 0 0 0 what\nv 1 0 0 1 2\nv 0 1 0\nf 1 2 3\n");
     EXPECT_TRUE(scene.primvars.empty());
     ASSERT_EQ(scene.warnings.size(), 1u);
     EXPECT_NE(scene.warnings[0].find("mesh.obj:1: what stands behind x, y and z of 2 vertices"),
@@ -198,14 +193,14 @@ TEST(ObjReader, WhatIsNoColourBehindAPositionIsNamedInOneWarning) {
 // -------- texture coordinates
 
 TEST(ObjReader, TextureCoordinatesAreOptional) {
-    Scene const scene = Parse(kQuadVertices + "vt 0 0\nf 1 2 3\nf 1//1 2//1 4//1\n");
+    Scene const scene = ParseObj(kObjQuadVertices + "vt 0 0\nf 1 2 3\nf 1//1 2//1 4//1\n");
     EXPECT_FALSE(scene.HasUVs());
     EXPECT_TRUE(scene.cage.fvarChannels.empty());
 }
 
 TEST(ObjReader, CornersNameTextureCoordinatesWithOrWithoutNormals) {
-    Scene const scene =
-        Parse(kQuadVertices + "vt 0 0.25\nvt 1 0 9\nvt 0.5\nf 1/1 2/2 3/3\nf 1/3/7 3/2/7 4/1/7\n");
+    Scene const scene = ParseObj(
+        kObjQuadVertices + "vt 0 0.25\nvt 1 0 9\nvt 0.5\nf 1/1 2/2 3/3\nf 1/3/7 3/2/7 4/1/7\n");
     EXPECT_EQ(scene.uvs,
               (std::vector<double>{0, 0.25, 1, 0, 0.5, 0}));  // w is dropped, v defaults to 0
     EXPECT_EQ(scene.cage.fvarChannels.at(0).numValues, 3);
@@ -213,12 +208,12 @@ TEST(ObjReader, CornersNameTextureCoordinatesWithOrWithoutNormals) {
 }
 
 TEST(ObjReader, CommentMayFollowALoneTextureCoordinate) {
-    Scene const scene = Parse(kQuadVertices + "vt 0.5 # u only\nf 1/1 2/1 3/1\n");
+    Scene const scene = ParseObj(kObjQuadVertices + "vt 0.5 # u only\nf 1/1 2/1 3/1\n");
     EXPECT_EQ(scene.uvs, (std::vector<double>{0.5, 0}));
 }
 
 TEST(ObjReader, FacesWithoutTextureIndicesLeaveThoseOfTheOthers) {
-    Scene const scene = Parse(kQuadVertices + "vt 0 0.5\nf 1/1 2/1 3/1\nf 1 3 4\n");
+    Scene const scene = ParseObj(kObjQuadVertices + "vt 0 0.5\nf 1/1 2/1 3/1\nf 1 3 4\n");
     EXPECT_TRUE(scene.warnings.empty());
     EXPECT_TRUE(scene.HasUVs());
     EXPECT_TRUE(scene.HasUVs(0));
@@ -231,7 +226,7 @@ TEST(ObjReader, FacesWithoutTextureIndicesLeaveThoseOfTheOthers) {
 
 TEST(ObjReader, WhereAllOrNoFacesHaveTextureIndicesNoneIsMarked) {
     for (char const* faces : {"f 1/1 2/1 3/1\nf 1/1 3/1 4/1\n", "f 1 2 3\nf 1 3 4\n"}) {
-        Scene const scene = Parse(kQuadVertices + "vt 0 0.5\n" + faces);
+        Scene const scene = ParseObj(kObjQuadVertices + "vt 0 0.5\n" + faces);
         EXPECT_TRUE(scene.lacksUVs.empty()) << faces;
         EXPECT_EQ(scene.HasUVs(1), scene.HasUVs()) << faces;
     }
@@ -240,9 +235,10 @@ TEST(ObjReader, WhereAllOrNoFacesHaveTextureIndicesNoneIsMarked) {
 // -------- groups
 
 TEST(ObjReader, KeepsGroupsOfAllThreeKinds) {
-    Scene const scene = Parse(kQuadVertices +
-                              "f 1 2 3\no body\nusemtl red\nf 1 2 3\ng left side\nf 1 2 4\nusemtl "
-                              "blue\ng\nf 1 3 4\nusemtl red\nf 2 3 4\n");
+    Scene const scene =
+        ParseObj(kObjQuadVertices +
+                 "f 1 2 3\no body\nusemtl red\nf 1 2 3\ng left side\nf 1 2 4\nusemtl "
+                 "blue\ng\nf 1 3 4\nusemtl red\nf 2 3 4\n");
     auto const& [materials, groups, objects] = scene.groups;
     EXPECT_EQ(materials.names, (std::vector<std::string>{"red", "blue"}));
     EXPECT_EQ(materials.faceGroup, (std::vector<Index>{-1, 0, 0, 1, 0}));
@@ -253,7 +249,7 @@ TEST(ObjReader, KeepsGroupsOfAllThreeKinds) {
 
 TEST(ObjReader, SelectsTheFacesOfNamedGroups) {
     Scene const scene =
-        Parse(kQuadVertices + "usemtl red\nf 1 2 3\ng left\nf 1 2 4\nusemtl blue\nf 1 3 4\n");
+        ParseObj(kObjQuadVertices + "usemtl red\nf 1 2 3\ng left\nf 1 2 4\nusemtl blue\nf 1 3 4\n");
     EXPECT_EQ(engine::SelectGroups(scene, {"red"}), (std::vector<char>{1, 1, 0}));
     EXPECT_EQ(engine::SelectGroups(scene, {"left"}), (std::vector<char>{0, 1, 1}));
 }
@@ -261,8 +257,8 @@ TEST(ObjReader, SelectsTheFacesOfNamedGroups) {
 // `g` takes several names; materials and objects have one, which may hold blanks.
 TEST(ObjReader, AFaceIsInEachOfTheGroupsNamedAfterG) {
     Scene const scene =
-        Parse(kQuadVertices +
-              "g left arm\nf 1 2 3\ng left\nf 1 2 4\ng arm\tright\nusemtl dark blue\nf 1 3 4\n");
+        ParseObj(kObjQuadVertices +
+                 "g left arm\nf 1 2 3\ng left\nf 1 2 4\ng arm\tright\nusemtl dark blue\nf 1 3 4\n");
     EXPECT_EQ(engine::SelectGroups(scene, {"left"}), (std::vector<char>{1, 1, 0}));
     EXPECT_EQ(engine::SelectGroups(scene, {"arm"}), (std::vector<char>{1, 0, 1}));
     EXPECT_EQ(engine::SelectGroups(scene, {"right", "dark blue"}), (std::vector<char>{0, 0, 1}));
@@ -272,38 +268,38 @@ TEST(ObjReader, AFaceIsInEachOfTheGroupsNamedAfterG) {
 }
 
 TEST(ObjReader, UnknownGroupIsRefusedWithTheNamesThereAre) {
-    Scene const scene = Parse(kQuadVertices + "usemtl red\nf 1 2 3\ng left\nf 1 2 4\n");
+    Scene const scene = ParseObj(kObjQuadVertices + "usemtl red\nf 1 2 3\ng left\nf 1 2 4\n");
     EXPECT_EQ(test::RefusalOf([&] { engine::SelectGroups(scene, {"green"}); }),
               "`groups`: 'mesh.obj' has no group 'green'; it has: red, left");
 }
 
 TEST(ObjReader, GroupDeclaredAfterTheLastFaceHoldsNoFace) {
-    Scene const scene = Parse(kQuad + "usemtl late\n");
+    Scene const scene = ParseObj(kObjQuad + "usemtl late\n");
     EXPECT_EQ(engine::SelectGroups(scene, {"late"}), (std::vector<char>{0}));
 }
 
 // -------- tags
 
 TEST(ObjReader, CreaseTagNamesOneEdge) {
-    Scene const scene = Parse(kQuad + "t crease 2/1/0 0 1 2.5\nt crease 2/1/0 3 2 10\n");
+    Scene const scene = ParseObj(kObjQuad + "t crease 2/1/0 0 1 2.5\nt crease 2/1/0 3 2 10\n");
     EXPECT_EQ(scene.cage.creaseVertexPairs, (std::vector<Index>{0, 1, 3, 2}));
     EXPECT_EQ(scene.cage.creaseSharpness, (std::vector<float>{2.5f, 10.0f}));
 }
 
 TEST(ObjReader, CreaseChainSharesItsSharpness) {
-    Scene const scene = Parse(kQuad + "t crease 4/1/0 0 1 2 3 1.5\n");
+    Scene const scene = ParseObj(kObjQuad + "t crease 4/1/0 0 1 2 3 1.5\n");
     EXPECT_EQ(scene.cage.creaseVertexPairs, (std::vector<Index>{0, 1, 1, 2, 2, 3}));
     EXPECT_EQ(scene.cage.creaseSharpness, (std::vector<float>{1.5f, 1.5f, 1.5f}));
 }
 
 TEST(ObjReader, CreaseChainMayHaveASharpnessForEachEdge) {
-    Scene const scene = Parse(kQuad + "t crease 4/3/0 0 1 2 3 1 2 3\n");
+    Scene const scene = ParseObj(kObjQuad + "t crease 4/3/0 0 1 2 3 1 2 3\n");
     EXPECT_EQ(scene.cage.creaseSharpness, (std::vector<float>{1, 2, 3}));
 }
 
 TEST(ObjReader, CornerTagNamesOneVertexOrMore) {
     Scene const scene =
-        Parse(kQuad + "t corner 1/1/0 3 2\nt corner 2/1/0 0 1 4\nt corner 2/2/0 1 2 5 6\n");
+        ParseObj(kObjQuad + "t corner 1/1/0 3 2\nt corner 2/1/0 0 1 4\nt corner 2/2/0 1 2 5 6\n");
     EXPECT_EQ(scene.cage.cornerVertices, (std::vector<Index>{3, 0, 1, 1, 2}));
     EXPECT_EQ(scene.cage.cornerSharpness, (std::vector<float>{2, 4, 4, 5, 6}));
 }
@@ -318,12 +314,13 @@ TEST(ObjReader, ValuesThatATagDoesNotTakeAreWarnedOf) {
 }
 
 TEST(ObjReader, HoleTagNamesFacesByZeroBasedIndex) {
-    Scene const scene = Parse(kQuad + "f 1 2 3\nf 1 3 4\nt hole 1/0/0 2\nt hole 2/0/0 0 1\n");
+    Scene const scene = ParseObj(kObjQuad + "f 1 2 3\nf 1 3 4\nt hole 1/0/0 2\nt hole 2/0/0 0 1\n");
     EXPECT_EQ(scene.cage.holes, (std::vector<Index>{2, 0, 1}));
 }
 
 TEST(ObjReader, TagsMayStandBeforeWhatTheyName) {
-    Scene const scene = Parse("t crease 2/1/0 0 1 2\nt corner 1/1/0 3 2\nt hole 1/0/0 0\n" + kQuad);
+    Scene const scene =
+        ParseObj("t crease 2/1/0 0 1 2\nt corner 1/1/0 3 2\nt hole 1/0/0 0\n" + kObjQuad);
     EXPECT_EQ(scene.cage.creaseSharpness.size(), 1u);
     EXPECT_EQ(scene.cage.holes, (std::vector<Index>{0}));
 }
@@ -333,7 +330,8 @@ TEST(ObjReader, BoundaryTagSetsTheBoundaryRule) {
     for (auto const& [value, rule] : {std::pair{0, Sdc::Options::VTX_BOUNDARY_NONE},
                                       {1, Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER},
                                       {2, Sdc::Options::VTX_BOUNDARY_EDGE_ONLY}}) {
-        Scene const scene = Parse(kQuad + fmt::format("t interpolateboundary 1/0/0 {}\n", value));
+        Scene const scene =
+            ParseObj(kObjQuad + fmt::format("t interpolateboundary 1/0/0 {}\n", value));
         EXPECT_EQ(scene.cage.options.GetVtxBoundaryInterpolation(), rule) << value;
         EXPECT_TRUE(scene.hasBoundaryTag);
     }
@@ -347,30 +345,31 @@ TEST(ObjReader, FaceVaryingTagSetsTheFaceVaryingRule) {
         Sdc::Options::FVAR_LINEAR_BOUNDARIES,    Sdc::Options::FVAR_LINEAR_ALL};
     for (int value = 0; value < 6; ++value) {
         Scene const scene =
-            Parse(kQuad + fmt::format("t facevaryinginterpolateboundary 1/0/0 {}\n", value));
+            ParseObj(kObjQuad + fmt::format("t facevaryinginterpolateboundary 1/0/0 {}\n", value));
         EXPECT_EQ(scene.cage.options.GetFVarLinearInterpolation(), rules[value]) << value;
         EXPECT_TRUE(scene.hasFVarTag);
     }
 }
 
 TEST(ObjReader, CreaseMethodTagSetsTheCreaseRule) {
-    EXPECT_EQ(Parse(kQuad + "t creasemethod 0/0/1 chaikin\n").cage.options.GetCreasingMethod(),
-              Sdc::Options::CREASE_CHAIKIN);
-    EXPECT_EQ(Parse(kQuad + "t creasemethod 0/0/1 normal\n").cage.options.GetCreasingMethod(),
+    EXPECT_EQ(
+        ParseObj(kObjQuad + "t creasemethod 0/0/1 chaikin\n").cage.options.GetCreasingMethod(),
+        Sdc::Options::CREASE_CHAIKIN);
+    EXPECT_EQ(ParseObj(kObjQuad + "t creasemethod 0/0/1 normal\n").cage.options.GetCreasingMethod(),
               Sdc::Options::CREASE_UNIFORM);
 }
 
 TEST(ObjReader, SmoothTrianglesTagSetsTheTriangleRule) {
-    EXPECT_EQ(
-        Parse(kQuad + "t smoothtriangles 0/0/1 smooth\n").cage.options.GetTriangleSubdivision(),
-        Sdc::Options::TRI_SUB_SMOOTH);
-    EXPECT_EQ(
-        Parse(kQuad + "t smoothtriangles 0/0/1 catmark\n").cage.options.GetTriangleSubdivision(),
-        Sdc::Options::TRI_SUB_CATMARK);
+    EXPECT_EQ(ParseObj(kObjQuad + "t smoothtriangles 0/0/1 smooth\n")
+                  .cage.options.GetTriangleSubdivision(),
+              Sdc::Options::TRI_SUB_SMOOTH);
+    EXPECT_EQ(ParseObj(kObjQuad + "t smoothtriangles 0/0/1 catmark\n")
+                  .cage.options.GetTriangleSubdivision(),
+              Sdc::Options::TRI_SUB_CATMARK);
 }
 
 TEST(ObjReader, FileWithoutTagsHasTheDefaultRules) {
-    Scene const scene = Parse(kQuad);
+    Scene const scene = ParseObj(kObjQuad);
     EXPECT_EQ(scene.cage.options.GetVtxBoundaryInterpolation(),
               Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
     EXPECT_EQ(scene.cage.options.GetFVarLinearInterpolation(),
@@ -380,9 +379,9 @@ TEST(ObjReader, FileWithoutTagsHasTheDefaultRules) {
 }
 
 TEST(ObjReader, TagsItCannotHonourAreNamedInWarnings) {
-    Scene const scene = Parse(kQuad +
-                              "t vertexedit 2/3/2 0 1 1 2 3 a b\nt edgeedit 1/1/1 x\nt faceedit "
-                              "1/1/1 x\nt sparkle 1/0/0 3\n");
+    Scene const scene = ParseObj(kObjQuad +
+                                 "t vertexedit 2/3/2 0 1 1 2 3 a b\nt edgeedit 1/1/1 x\nt faceedit "
+                                 "1/1/1 x\nt sparkle 1/0/0 3\n");
     ASSERT_EQ(scene.warnings.size(), 4u);
     size_t line = 6;
     for (std::string const name : {"vertexedit", "edgeedit", "faceedit", "sparkle"}) {
@@ -394,9 +393,9 @@ TEST(ObjReader, TagsItCannotHonourAreNamedInWarnings) {
 }
 
 TEST(ObjReader, TagsWithoutAnEffectMakeFewWarningsHoweverManyThereAre) {
-    std::string text = kQuad;
+    std::string text = kObjQuad;
     for (int i = 0; i < 1000; ++i) text += fmt::format("t sparkle 1/0/0 3\nt tag{} 1/0/0 3\n", i);
-    Scene const scene = Parse(text);
+    Scene const scene = ParseObj(text);
     EXPECT_LT(scene.warnings.size(), 20u);
     EXPECT_EQ(scene.warnings.at(0),
               "mesh.obj:6: tag 'sparkle' is not known and has no effect, nor have 999 more");
@@ -405,9 +404,9 @@ TEST(ObjReader, TagsWithoutAnEffectMakeFewWarningsHoweverManyThereAre) {
 // Looking a name up among all others, or all faces up for each name, would take minutes.
 TEST(ObjReader, ManyGroupsTakeTimeInProportion) {
     constexpr int kCount = 100000;
-    std::string text = kQuadVertices;
+    std::string text = kObjQuadVertices;
     for (int i = 0; i < kCount; ++i) text += fmt::format("g all part{}\nf 1 2 3\n", i);
-    Scene const scene = Parse(text);
+    Scene const scene = ParseObj(text);
     EXPECT_EQ(engine::ListGroups(scene).size(), kCount + 1u);
     auto const selected = engine::SelectGroups(scene, {"all"});
     EXPECT_EQ(std::count(selected.begin(), selected.end(), 1), kCount);
@@ -418,11 +417,11 @@ TEST(ObjReader, ManyGroupsTakeTimeInProportion) {
 
 TEST(ObjReader, DamagedFilesAreReadWholeOrRefusedAtALine) {
     std::string const whole =
-        kQuadVertices +
+        kObjQuadVertices +
         "vt 0 0\nvt 1 0\nvt 1 1\nusemtl a\ng b\nf 1/1 2/2 3/3\nf -4/1/1 -2/2/2 -1/3/3\nt crease "
         "3/2/0 0 1 2 1 "
         "2\nt corner 1/1/0 3 2\nt hole 1/0/0 1\nt interpolateboundary 1/0/0 2\n";
-    auto const counts = test::ReadDamaged(whole, 2000, "mesh.obj", Parse);
+    auto const counts = test::ReadDamaged(whole, 2000, "mesh.obj", ParseObj);
     EXPECT_GT(counts.numRead, 100);
     EXPECT_GT(counts.numRefused, 100);
 }
@@ -431,7 +430,7 @@ TEST(ObjReader, GarbageIsRefused) {
     for (unsigned seed = 0; seed < 50; ++seed) {
         for (std::string const& beginning :
              {std::string(), std::string("v 0 0 0\nf "), std::string("t crease ")}) {
-            EXPECT_THROW(Parse(test::Garbage(beginning, seed)), Error) << seed;
+            EXPECT_THROW(ParseObj(test::Garbage(beginning, seed)), Error) << seed;
         }
     }
 }

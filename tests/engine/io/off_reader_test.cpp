@@ -9,23 +9,13 @@ namespace limn {
 namespace {
 
 using engine::Scene;
+using test::kOffQuad;
+using test::ParseOff;
 using test::Refusal;
-
-Scene Parse(std::string const& text) {
-    Scene scene;
-    scene.path = "mesh.off";
-    engine::ReadOff(text, scene);
-    return scene;
-}
-
-std::string RefusalOfText(std::string const& text) {
-    return test::RefusalOf([&] { Parse(text); });
-}
-
-std::string const kQuad = "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
+using test::RefusalOfOff;
 
 TEST(OffReader, ReadsVerticesAndFaces) {
-    Scene const scene = Parse(kQuad);
+    Scene const scene = ParseOff(kOffQuad);
     EXPECT_EQ(scene.positions, (std::vector<double>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}));
     EXPECT_EQ(scene.cage.numVertices, 4);
     EXPECT_EQ(scene.cage.faceSizes, (std::vector<Index>{4}));
@@ -34,18 +24,18 @@ TEST(OffReader, ReadsVerticesAndFaces) {
 }
 
 TEST(OffReader, CommentsEmptyLinesAndCountsBesideTheKeywordChangeNothing) {
-    Scene const scene = Parse(
+    Scene const scene = ParseOff(
         "# made by hand\nOFF 4 1 # no edges given\n\n0 0 0\n1 0 0 # right\n\n1 1 0\n# between\n0 1 "
         "0\n4 0 1 2 3\n");
-    EXPECT_EQ(scene.positions, Parse(kQuad).positions);
-    EXPECT_EQ(scene.cage.faceVertices, Parse(kQuad).cage.faceVertices);
+    EXPECT_EQ(scene.positions, ParseOff(kOffQuad).positions);
+    EXPECT_EQ(scene.cage.faceVertices, ParseOff(kOffQuad).cage.faceVertices);
 }
 
 TEST(OffReader, CountsMayStickToTheKeyword) {
-    std::string text = kQuad;
+    std::string text = kOffQuad;
     text.erase(3, 1);  // OFF4 1 0
-    EXPECT_EQ(Parse(text).cage.faceVertices, Parse(kQuad).cage.faceVertices);
-    EXPECT_EQ(Parse("\xef\xbb\xbf" + text).positions, Parse(kQuad).positions);
+    EXPECT_EQ(ParseOff(text).cage.faceVertices, ParseOff(kOffQuad).cage.faceVertices);
+    EXPECT_EQ(ParseOff("\xef\xbb\xbf" + text).positions, ParseOff(kOffQuad).positions);
 }
 
 TEST(OffReader, LinesBehindTheLastFaceAreWarnedOf) {
@@ -67,13 +57,13 @@ TEST(OffReader, NumbersOfAVertexThatTheKeywordDoesNotNameAreWarnedOf) {
 }
 
 TEST(OffReader, NormalsAreSkipped) {
-    Scene const scene = Parse("NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n");
+    Scene const scene = ParseOff("NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n");
     EXPECT_EQ(scene.positions, (std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0}));
     EXPECT_TRUE(scene.primvars.empty());
 }
 
 TEST(OffReader, TextureCoordinatesOfStoffAreUVs) {
-    Scene const scene = Parse("STOFF\n3 1 0\n0 0 0 .25 .5\n1 0 0 1 0\n0 1 0 0 1\n3 0 2 1\n");
+    Scene const scene = ParseOff("STOFF\n3 1 0\n0 0 0 .25 .5\n1 0 0 1 0\n0 1 0 0 1\n3 0 2 1\n");
     EXPECT_EQ(scene.uvs, (std::vector<double>{0.25, 0.5, 1, 0, 0, 1}));
     EXPECT_EQ(scene.cage.fvarChannels.at(0).numValues, 3);
     EXPECT_EQ(scene.cage.fvarChannels.at(0).valueIndices, (std::vector<Index>{0, 2, 1}));
@@ -83,8 +73,8 @@ TEST(OffReader, TextureCoordinatesOfStoffAreUVs) {
 TEST(OffReader, VerticesMayHaveAllAtOnce) {
     for (std::string const alpha : {"", " 1"}) {
         Scene const scene =
-            Parse("STCNOFF\n3 1 0\n0 0 0 0 0 1 .5 0 0" + alpha + " .25 .5\n1 0 0 0 0 1 0 1 0" +
-                  alpha + " 1 0\n0 1 0 0 0 1 0 0 1" + alpha + " 0 1\n3 0 1 2\n");
+            ParseOff("STCNOFF\n3 1 0\n0 0 0 0 0 1 .5 0 0" + alpha + " .25 .5\n1 0 0 0 0 1 0 1 0" +
+                     alpha + " 1 0\n0 1 0 0 0 1 0 0 1" + alpha + " 0 1\n3 0 1 2\n");
         EXPECT_EQ(scene.positions, (std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0}));
         EXPECT_EQ(scene.uvs, (std::vector<double>{0.25, 0.5, 1, 0, 0, 1}));
         EXPECT_EQ(scene.primvars.at(0).numChannels, alpha.empty() ? 3 : 4);
@@ -93,21 +83,22 @@ TEST(OffReader, VerticesMayHaveAllAtOnce) {
 }
 
 TEST(OffReader, CrlfAndMissingLastLineEndChangeNothing) {
-    for (std::string const& text : {test::WithCrlf(kQuad), kQuad.substr(0, kQuad.size() - 1)}) {
-        EXPECT_EQ(Parse(text).positions, Parse(kQuad).positions);
-        EXPECT_EQ(Parse(text).cage.faceVertices, Parse(kQuad).cage.faceVertices);
+    for (std::string const& text :
+         {test::WithCrlf(kOffQuad), kOffQuad.substr(0, kOffQuad.size() - 1)}) {
+        EXPECT_EQ(ParseOff(text).positions, ParseOff(kOffQuad).positions);
+        EXPECT_EQ(ParseOff(text).cage.faceVertices, ParseOff(kOffQuad).cage.faceVertices);
     }
 }
 
 TEST(OffReader, FaceColoursAreSkipped) {
-    Scene const scene =
-        Parse("OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 255 0 0\n3 0 2 3 0.5 0.5 0.5 1\n");
+    Scene const scene = ParseOff(
+        "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 255 0 0\n3 0 2 3 0.5 0.5 0.5 1\n");
     EXPECT_EQ(scene.cage.faceVertices, (std::vector<Index>{0, 1, 2, 0, 2, 3}));
 }
 
 TEST(OffReader, VertexColoursOfCoffArePrimvars) {
     Scene const scene =
-        Parse("COFF\n3 1 0\n0 0 0 1 .5 .25 1\n1 0 0 0 0 0 1\n0 1 0 1 1 1 0\n3 0 1 2\n");
+        ParseOff("COFF\n3 1 0\n0 0 0 1 .5 .25 1\n1 0 0 0 0 0 1\n0 1 0 1 1 1 0\n3 0 1 2\n");
     ASSERT_EQ(scene.primvars.size(), 1u);
     EXPECT_EQ(scene.primvars[0].name, "color");
     EXPECT_EQ(scene.primvars[0].values,
@@ -115,7 +106,8 @@ TEST(OffReader, VertexColoursOfCoffArePrimvars) {
 }
 
 std::vector<float> ColoursOf(std::string const& first, std::string const& second) {
-    return Parse("COFF\n3 1 0\n0 0 0 " + first + "\n1 0 0 " + second + "\n0 1 0 0 0 0 0\n3 0 1 2\n")
+    return ParseOff("COFF\n3 1 0\n0 0 0 " + first + "\n1 0 0 " + second +
+                    "\n0 1 0 0 0 0 0\n3 0 1 2\n")
         .primvars.at(0)
         .values;
 }
@@ -141,14 +133,14 @@ TEST(OffReader, OtherVertexColoursStayAsTheyAre) {
 
 TEST(OffReader, NumbersDoNotDependOnTheLocale) {
     test::CommaLocale const commas;
-    Scene const scene = Parse("OFF\n3 1 0\n1.5 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    Scene const scene = ParseOff("OFF\n3 1 0\n1.5 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     EXPECT_EQ(scene.positions[0], 1.5);
 }
 
 class OffRefusal : public testing::TestWithParam<Refusal> {};
 
 TEST_P(OffRefusal, NamesLineReasonAndRemedy) {
-    test::ExpectRefusal(GetParam(), RefusalOfText(GetParam().text));
+    test::ExpectRefusal(GetParam(), RefusalOfOff(GetParam().text));
 }
 
 std::string const kPoints = "0 0 0\n1 0 0\n0 1 0\n";
@@ -215,16 +207,16 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(OffReader, HugeCountsAreRefusedWithoutRoomForThem) {
     size_t const before = test::PeakMemory();
-    EXPECT_NE(RefusalOfText("OFF\n536870911 536870911 0\n" + kPoints), "");
-    EXPECT_NE(RefusalOfText("OFF\n3 1 0\n" + kPoints + "536870911 0 1 2\n"), "");
+    EXPECT_NE(RefusalOfOff("OFF\n536870911 536870911 0\n" + kPoints), "");
+    EXPECT_NE(RefusalOfOff("OFF\n3 1 0\n" + kPoints + "536870911 0 1 2\n"), "");
     EXPECT_LT(test::PeakMemory() - before, test::kModestMemory);
 }
 
 TEST(OffReader, DamagedFilesAreReadWholeOrRefusedAtALine) {
     for (std::string const& whole :
-         {kQuad, std::string("STCNOFF3 1 0\n0 0 0 0 0 1 1 0 0 0 0\n1 0 0 0 0 1 0 1 0 1 0\n"
-                             "0 1 0 0 0 1 0 0 1 0 1\n3 0 1 2\n")}) {
-        auto const counts = test::ReadDamaged(whole, 2000, "mesh.off", Parse);
+         {kOffQuad, std::string("STCNOFF3 1 0\n0 0 0 0 0 1 1 0 0 0 0\n1 0 0 0 0 1 0 1 0 1 0\n"
+                                "0 1 0 0 0 1 0 0 1 0 1\n3 0 1 2\n")}) {
+        auto const counts = test::ReadDamaged(whole, 2000, "mesh.off", ParseOff);
         EXPECT_GT(counts.numRead, 100);
         EXPECT_GT(counts.numRefused, 100);
     }
@@ -232,8 +224,8 @@ TEST(OffReader, DamagedFilesAreReadWholeOrRefusedAtALine) {
 
 TEST(OffReader, GarbageIsRefused) {
     for (unsigned seed = 0; seed < 50; ++seed) {
-        EXPECT_THROW(Parse(test::Garbage("", seed)), Error) << seed;
-        EXPECT_THROW(Parse(test::Garbage("OFF\n4 1 0\n", seed)), Error) << seed;
+        EXPECT_THROW(ParseOff(test::Garbage("", seed)), Error) << seed;
+        EXPECT_THROW(ParseOff(test::Garbage("OFF\n4 1 0\n", seed)), Error) << seed;
     }
 }
 

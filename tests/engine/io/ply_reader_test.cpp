@@ -17,17 +17,9 @@ namespace limn {
 namespace {
 
 using engine::Scene;
-
-Scene Parse(std::string const& bytes) {
-    Scene scene;
-    scene.path = "mesh.ply";
-    engine::ReadPly(bytes, scene);
-    return scene;
-}
-
-std::string RefusalOfBytes(std::string const& bytes) {
-    return test::RefusalOf([&] { Parse(bytes); });
-}
+using test::kPlyTriangle;
+using test::ParsePly;
+using test::RefusalOfPly;
 
 /// Binary values in either byte order.
 class Bytes {
@@ -52,12 +44,6 @@ private:
 char const* FormatName(bool isBig) {
     return isBig ? "binary_big_endian" : "binary_little_endian";
 }
-
-std::string const kTriangle =
-    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
-    "z\n"
-    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 "
-    "1 2\n";
 
 /// A triangle with every type a property can have, and its header.
 std::string MakeTyped(bool isBig) {
@@ -98,7 +84,7 @@ engine::Primvar const* FindPrimvar(Scene const& scene, std::string const& name) 
 }
 
 TEST(PlyReader, ReadsText) {
-    Scene const scene = Parse(kTriangle);
+    Scene const scene = ParsePly(kPlyTriangle);
     EXPECT_EQ(scene.positions, (std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0}));
     EXPECT_EQ(scene.cage.numVertices, 3);
     EXPECT_EQ(scene.cage.faceSizes, (std::vector<Index>{3}));
@@ -110,9 +96,9 @@ TEST(PlyReader, ReadsText) {
 
 TEST(PlyReader, CrlfAndMissingLastLineEndChangeNothing) {
     for (std::string const& text :
-         {test::WithCrlf(kTriangle), kTriangle.substr(0, kTriangle.size() - 1)}) {
-        EXPECT_EQ(Parse(text).positions, Parse(kTriangle).positions);
-        EXPECT_EQ(Parse(text).cage.faceVertices, Parse(kTriangle).cage.faceVertices);
+         {test::WithCrlf(kPlyTriangle), kPlyTriangle.substr(0, kPlyTriangle.size() - 1)}) {
+        EXPECT_EQ(ParsePly(text).positions, ParsePly(kPlyTriangle).positions);
+        EXPECT_EQ(ParsePly(text).cage.faceVertices, ParsePly(kPlyTriangle).cage.faceVertices);
     }
 }
 
@@ -134,14 +120,14 @@ TEST(PlyReader, WhatFollowsTheLastRowIsWarnedOfUnlessItIsWhiteSpace) {
 
 TEST(PlyReader, AnyLineEndChangesNothing) {
     for (std::string const end : {"\r", "\n\r"}) {
-        Scene const other = Parse(std::regex_replace(kTriangle, std::regex("\n"), end));
-        EXPECT_EQ(other.positions, Parse(kTriangle).positions);
-        EXPECT_EQ(other.faceLines, Parse(kTriangle).faceLines);
+        Scene const other = ParsePly(std::regex_replace(kPlyTriangle, std::regex("\n"), end));
+        EXPECT_EQ(other.positions, ParsePly(kPlyTriangle).positions);
+        EXPECT_EQ(other.faceLines, ParsePly(kPlyTriangle).faceLines);
     }
 }
 
 TEST(PlyReader, ElementsMayComeInAnyOrder) {
-    Scene const scene = Parse(
+    Scene const scene = ParsePly(
         "ply\nformat ascii 1.0\nelement edge 1\nproperty int a\nelement face 1\nproperty list "
         "uchar "
         "int vertex_indices\nelement vertex 3\nproperty float z\nproperty float x\nproperty float "
@@ -159,26 +145,26 @@ std::string MakeStrips(std::string const& strips) {
 }
 
 TEST(PlyReader, TriangleStripsAreTurnedAlternately) {
-    EXPECT_EQ(Parse(MakeStrips("6 0 1 2 3 4 5")).cage.faceVertices,
+    EXPECT_EQ(ParsePly(MakeStrips("6 0 1 2 3 4 5")).cage.faceVertices,
               (std::vector<Index>{0, 1, 2, 2, 1, 3, 2, 3, 4, 4, 3, 5}));
 }
 
 TEST(PlyReader, ANegativeIndexBeginsAStripAnew) {
-    Scene const scene = Parse(MakeStrips("9 0 1 2 3 -1 2 3 4 5"));
+    Scene const scene = ParsePly(MakeStrips("9 0 1 2 3 -1 2 3 4 5"));
     EXPECT_EQ(scene.cage.faceVertices, (std::vector<Index>{0, 1, 2, 2, 1, 3, 2, 3, 4, 4, 3, 5}));
     EXPECT_EQ(scene.faceLines, (std::vector<uint32_t>{16, 16, 16, 16}));
-    EXPECT_EQ(Parse(MakeStrips("7 -1 0 -1 0 1 2 -1")).cage.faceVertices,
+    EXPECT_EQ(ParsePly(MakeStrips("7 -1 0 -1 0 1 2 -1")).cage.faceVertices,
               (std::vector<Index>{0, 1, 2}));
 }
 
 TEST(PlyReader, TrianglesThatRepeatAVertexOnlyLeadOn) {
     // (0 1 2), four that lead on, and 4 3 5 as the sixth, which is turned.
-    EXPECT_EQ(Parse(MakeStrips("8 0 1 2 2 4 4 3 5")).cage.faceVertices,
+    EXPECT_EQ(ParsePly(MakeStrips("8 0 1 2 2 4 4 3 5")).cage.faceVertices,
               (std::vector<Index>{0, 1, 2, 3, 4, 5}));
 }
 
 TEST(PlyReader, AStripsVertexThatIsNotIsRefused) {
-    EXPECT_EQ(RefusalOfBytes(MakeStrips("3 0 1 6")),
+    EXPECT_EQ(RefusalOfPly(MakeStrips("3 0 1 6")),
               "mesh.ply:16: a face uses vertex 6; 0 to 5 are possible");
 }
 
@@ -193,18 +179,18 @@ std::string MakeTextured(std::string const& comments) {
 
 TEST(PlyReader, TextureNumbersAreMaterials) {
     auto const materials =
-        Parse(MakeTextured("comment TextureFile skin.png\ncomment TextureFile the eyes.png\n"))
+        ParsePly(MakeTextured("comment TextureFile skin.png\ncomment TextureFile the eyes.png\n"))
             .groups[static_cast<size_t>(engine::GroupKind::Material)];
     EXPECT_EQ(materials.names, (std::vector<std::string>{"the eyes.png", "skin.png"}));
     EXPECT_EQ(materials.faceGroup, (std::vector<Index>{0, -1, 1}));
-    EXPECT_EQ(Parse(MakeTextured("")).groups[0].names,
+    EXPECT_EQ(ParsePly(MakeTextured("")).groups[0].names,
               (std::vector<std::string>{"texture1", "texture0"}));
 }
 
 class PlyByteOrder : public testing::TestWithParam<bool> {};
 
 TEST_P(PlyByteOrder, EveryTypeIsRead) {
-    Scene const scene = Parse(MakeTyped(GetParam()));
+    Scene const scene = ParsePly(MakeTyped(GetParam()));
     EXPECT_EQ(scene.positions, (std::vector<double>{0, 0, 0, 1.25, 0.1f, -7, 2.5, 0.1f * 2, -14}));
     EXPECT_EQ(scene.cage.faceVertices, (std::vector<Index>{2, 1, 0}));
     ASSERT_NE(FindPrimvar(scene, "a"), nullptr);
@@ -215,7 +201,7 @@ TEST_P(PlyByteOrder, EveryTypeIsRead) {
 }
 
 TEST_P(PlyByteOrder, ByteColoursBecomeAPrimvarFromZeroToOne) {
-    Scene const scene = Parse(MakeTyped(GetParam()));
+    Scene const scene = ParsePly(MakeTyped(GetParam()));
     auto const* const colour = FindPrimvar(scene, "color");
     ASSERT_NE(colour, nullptr);
     EXPECT_EQ(colour->numChannels, 3);
@@ -224,7 +210,7 @@ TEST_P(PlyByteOrder, ByteColoursBecomeAPrimvarFromZeroToOne) {
 }
 
 TEST_P(PlyByteOrder, TexcoordListGivesEveryCornerItsUV) {
-    Scene const scene = Parse(MakeTyped(GetParam()));
+    Scene const scene = ParsePly(MakeTyped(GetParam()));
     auto const& indices = scene.cage.fvarChannels.at(0).valueIndices;
     ASSERT_EQ(indices.size(), 3u);
     double const expected[3][2] = {{0, 0.5}, {1, 0.25}, {0.75, 0.125}};
@@ -236,7 +222,7 @@ TEST_P(PlyByteOrder, TexcoordListGivesEveryCornerItsUV) {
 
 // Data that begins with a byte that could belong to the header's line end is not eaten.
 TEST_P(PlyByteOrder, HeadersEndAsTheirFirstLinesDo) {
-    std::string const header = kTriangle.substr(0, kTriangle.find("end_header\n") + 11);
+    std::string const header = kPlyTriangle.substr(0, kPlyTriangle.find("end_header\n") + 11);
     for (std::string const end : {"\n", "\r\n", "\r", "\n\r"}) {
         for (char const first : {'\r', '\n'}) {
             Bytes body(GetParam());
@@ -246,7 +232,7 @@ TEST_P(PlyByteOrder, HeadersEndAsTheirFirstLinesDo) {
             std::string text = header;
             text.replace(text.find("ascii"), 5, FormatName(GetParam()));
             Scene const scene =
-                Parse(std::regex_replace(text, std::regex("\n"), end) + body.GetText());
+                ParsePly(std::regex_replace(text, std::regex("\n"), end) + body.GetText());
             EXPECT_EQ(scene.positions[0], x);
             EXPECT_EQ(scene.cage.faceVertices, (std::vector<Index>{0, 1, 2}));
         }
@@ -256,7 +242,7 @@ TEST_P(PlyByteOrder, HeadersEndAsTheirFirstLinesDo) {
 TEST_P(PlyByteOrder, FileCutAnywhereIsRefused) {
     std::string const whole = MakeTyped(GetParam());
     for (size_t size = 0; size < whole.size(); ++size) {
-        std::string const message = RefusalOfBytes(whole.substr(0, size));
+        std::string const message = RefusalOfPly(whole.substr(0, size));
         ASSERT_EQ(message.find("mesh.ply:"), 0u)
             << size << " of " << whole.size() << " bytes: " << message;
     }
@@ -268,9 +254,9 @@ TEST_P(PlyByteOrder, NanInAPositionIsRefusedAndItsVertexNamed) {
          {0.0f, 0.0f, 0.0f, 1.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f, 0.0f, 1.0f, 0.0f})
         body.Add(x);
     body.Add(static_cast<uint8_t>(3)).Add(0).Add(1).Add(2);
-    std::string header = kTriangle.substr(0, kTriangle.find("end_header\n") + 11);
+    std::string header = kPlyTriangle.substr(0, kPlyTriangle.find("end_header\n") + 11);
     header.replace(header.find("ascii"), 5, FormatName(GetParam()));
-    std::string const message = RefusalOfBytes(header + body.GetText());
+    std::string const message = RefusalOfPly(header + body.GetText());
     EXPECT_EQ(message.find("mesh.ply: vertex 1: "), 0u) << message;
     EXPECT_NE(message.find("'y' is nan; a number up to 1e+30 is needed"), std::string::npos)
         << message;
@@ -283,11 +269,11 @@ INSTANTIATE_TEST_SUITE_P(Order, PlyByteOrder, testing::Bool(),
 
 TEST(PlyReader, VertexTextureCoordinatesGoByThreeNames) {
     for (auto const& [u, v] : {std::pair{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}}) {
-        std::string text = kTriangle;
+        std::string text = kPlyTriangle;
         text.replace(text.find("element face"), 0,
                      fmt::format("property float {}\nproperty float {}\n", u, v));
         text.replace(text.find("0 0 0\n"), 18, "0 0 0 .25 .5\n1 0 0 1 0\n0 1 0 0 1\n");
-        Scene const scene = Parse(text);
+        Scene const scene = ParsePly(text);
         EXPECT_EQ(scene.uvs, (std::vector<double>{0.25, 0.5, 1, 0, 0, 1})) << u;
         EXPECT_EQ(scene.cage.fvarChannels.at(0).valueIndices, scene.cage.faceVertices) << u;
         EXPECT_TRUE(scene.primvars.empty()) << u;
@@ -307,7 +293,7 @@ std::string MakePair(std::string const& first, std::string const& second) {
 TEST(PlyReader, CornersOfOneVertexShareAUVOnlyWhereItIsTheSame) {
     // Vertex 0 has (0,0) in both faces, vertex 2 has (1,1) in one and (.5,.5) in the other: 5
     // values.
-    Scene const scene = Parse(MakePair("6 0 0 1 0 1 1", "6 0 0 .5 .5 0 1"));
+    Scene const scene = ParsePly(MakePair("6 0 0 1 0 1 1", "6 0 0 .5 .5 0 1"));
     auto const& channel = scene.cage.fvarChannels.at(0);
     EXPECT_EQ(channel.numValues, 5);
     EXPECT_EQ(channel.valueIndices[0], channel.valueIndices[3]);
@@ -315,34 +301,34 @@ TEST(PlyReader, CornersOfOneVertexShareAUVOnlyWhereItIsTheSame) {
 }
 
 TEST(PlyReader, FacesWithoutTexcoordsLeaveThoseOfTheOthers) {
-    Scene const scene = Parse(MakePair("6 0 0 1 0 1 1", "0"));
+    Scene const scene = ParsePly(MakePair("6 0 0 1 0 1 1", "0"));
     EXPECT_TRUE(scene.warnings.empty());
     EXPECT_TRUE(scene.HasUVs(0));
     EXPECT_FALSE(scene.HasUVs(1));
     EXPECT_EQ(scene.uvs, (std::vector<double>{0, 0, 1, 0, 1, 1, 0, 0}));
     EXPECT_EQ(scene.cage.fvarChannels.at(0).valueIndices, (std::vector<Index>{0, 1, 2, 3, 3, 3}));
-    EXPECT_FALSE(Parse(MakePair("0", "0")).HasUVs());
+    EXPECT_FALSE(ParsePly(MakePair("0", "0")).HasUVs());
 }
 
 TEST(PlyReader, FurtherScalarsArePrimvarsAndNormalsAreNot) {
-    std::string text = kTriangle;
+    std::string text = kPlyTriangle;
     text.replace(
         text.find("element face"), 0,
         "property float nx\nproperty float ny\nproperty float nz\nproperty float quality\n");
     text.replace(text.find("0 0 0\n"), 18, "0 0 0 0 0 1 .5\n1 0 0 0 0 1 -2\n0 1 0 0 0 1 3e4\n");
-    Scene const scene = Parse(text);
+    Scene const scene = ParsePly(text);
     ASSERT_EQ(scene.primvars.size(), 1u);
     EXPECT_EQ(scene.primvars[0].name, "quality");
     EXPECT_EQ(scene.primvars[0].values, (std::vector<float>{0.5f, -2.0f, 3e4f}));
 }
 
 TEST(PlyReader, AlphaMakesColoursFourChannels) {
-    std::string text = kTriangle;
+    std::string text = kPlyTriangle;
     text.replace(
         text.find("element face"), 0,
         "property float red\nproperty float green\nproperty float blue\nproperty float alpha\n");
     text.replace(text.find("0 0 0\n"), 18, "0 0 0 1 2 3 4\n1 0 0 5 6 7 8\n0 1 0 .5 .25 0 1\n");
-    Scene const scene = Parse(text);
+    Scene const scene = ParsePly(text);
     ASSERT_EQ(scene.primvars.size(), 1u);
     EXPECT_EQ(scene.primvars[0].numChannels, 4);
     EXPECT_EQ(scene.primvars[0].values,
@@ -350,14 +336,14 @@ TEST(PlyReader, AlphaMakesColoursFourChannels) {
 }
 
 TEST(PlyReader, ScalarNamedColorDoesNotMixWithColours) {
-    std::string text = kTriangle;
+    std::string text = kPlyTriangle;
     text.replace(
         text.find("element face"), 0,
         "property float color\nproperty float red\nproperty float green\nproperty float blue\n");
     text.replace(text.find("0 0 0\n"), 18, "0 0 0 9 1 2 3\n1 0 0 9 4 5 6\n0 1 0 9 7 8 10\n");
     Scene scene;
     try {
-        scene = Parse(text);
+        scene = ParsePly(text);
     } catch (Error const&) {
         return;  // to refuse it would be right too
     }
@@ -371,18 +357,18 @@ TEST(PlyReader, ScalarNamedColorDoesNotMixWithColours) {
 }
 
 TEST(PlyReader, ElementsItDoesNotKnowAreSkipped) {
-    std::string text = kTriangle;
+    std::string text = kPlyTriangle;
     text.replace(text.find("element face"), 0,
                  "element camera 2\nproperty float f\nproperty list uchar int ids\n");
     text.replace(text.find("3 0 1 2\n"), 0, "1.5 2 7 7\n2.5 0\n");
-    EXPECT_EQ(Parse(text).cage.faceVertices, (std::vector<Index>{0, 1, 2}));
+    EXPECT_EQ(ParsePly(text).cage.faceVertices, (std::vector<Index>{0, 1, 2}));
 }
 
 TEST(PlyReader, NumbersDoNotDependOnTheLocale) {
-    std::string text = kTriangle;
+    std::string text = kPlyTriangle;
     text.replace(text.find("1 0 0\n"), 5, "1.5 0 0");
     test::CommaLocale const commas;
-    EXPECT_EQ(Parse(text).positions[3], 1.5);
+    EXPECT_EQ(ParsePly(text).positions[3], 1.5);
 }
 
 // -------- refusals
@@ -396,7 +382,7 @@ TEST(PlyReader, TwoIndexListsAreRefusedOrRead) {
         "property list uchar float texcoord\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 3 0 1 2 6 0 "
         "0 1 0 0 1\n";
     try {
-        Scene const scene = Parse(text);
+        Scene const scene = ParsePly(text);
         EXPECT_EQ(scene.cage.faceVertices.size(), 3u);
         EXPECT_EQ(scene.cage.fvarChannels.at(0).valueIndices.size(), 3u);
     } catch (Error const& error) {
@@ -405,27 +391,26 @@ TEST(PlyReader, TwoIndexListsAreRefusedOrRead) {
 }
 
 TEST(PlyReader, TexcoordListOfTheWrongLengthIsRefused) {
-    std::string const message = RefusalOfBytes(MakePair("6 0 0 1 0 1 1", "4 0 0 .5 .5"));
+    std::string const message = RefusalOfPly(MakePair("6 0 0 1 0 1 1", "4 0 0 .5 .5"));
     EXPECT_EQ(message, "mesh.ply:16: list 'texcoord' has 4 numbers; 6 are needed");
 }
 
 TEST(PlyReader, NanInATexcoordIsRefused) {
-    EXPECT_EQ(RefusalOfBytes(MakePair("6 0 0 1 nan 1 1", "6 0 0 1 1 0 1")).find("mesh.ply:15: "),
-              0u);
+    EXPECT_EQ(RefusalOfPly(MakePair("6 0 0 1 nan 1 1", "6 0 0 1 1 0 1")).find("mesh.ply:15: "), 0u);
 }
 
 TEST(PlyReader, HugeCountsInTheHeaderAreRefusedWithoutRoomForThem) {
     size_t const before = test::PeakMemory();
     for (std::string const format : {"ascii", "binary_little_endian"}) {
         for (std::string const count : {"100000000", "536870911"}) {
-            std::string text = kTriangle;
+            std::string text = kPlyTriangle;
             text.replace(text.find("ascii"), 5, format);
             std::string huge = text;
             huge.replace(huge.find("vertex 3"), 8, "vertex " + count);
-            EXPECT_NE(RefusalOfBytes(huge), "") << format << " vertex " << count;
+            EXPECT_NE(RefusalOfPly(huge), "") << format << " vertex " << count;
             huge = text;
             huge.replace(huge.find("face 1"), 6, "face " + count);
-            EXPECT_NE(RefusalOfBytes(huge), "") << format << " face " << count;
+            EXPECT_NE(RefusalOfPly(huge), "") << format << " face " << count;
         }
     }
     EXPECT_LT(test::PeakMemory() - before, test::kModestMemory);
@@ -440,19 +425,19 @@ TEST(PlyReader, ManyPropertiesOfManyVerticesAreRefusedWithoutRoomForThem) {
     text += "element face 1\nproperty list uchar int vertex_indices\nend_header\n" +
             std::string(200000, '\0');
     size_t const before = test::PeakMemory();
-    EXPECT_NE(RefusalOfBytes(text), "");
+    EXPECT_NE(RefusalOfPly(text), "");
     EXPECT_LT(test::PeakMemory() - before, test::kModestMemory);
 }
 
 TEST(PlyReader, HugeListInABinaryFileIsRefusedWithoutRoomForIt) {
-    std::string header = kTriangle.substr(0, kTriangle.find("end_header\n") + 11);
+    std::string header = kPlyTriangle.substr(0, kPlyTriangle.find("end_header\n") + 11);
     header.replace(header.find("ascii"), 5, "binary_little_endian");
     header.replace(header.find("list uchar"), 10, "list uint ");
     Bytes body(false);
     for (int i = 0; i < 9; ++i) body.Add(static_cast<float>(i));
     body.Add(900000000u).Add(0).Add(1).Add(2);
     size_t const before = test::PeakMemory();
-    std::string const message = RefusalOfBytes(header + body.GetText());
+    std::string const message = RefusalOfPly(header + body.GetText());
     EXPECT_NE(message.find("beyond the end of the file"), std::string::npos) << message;
     EXPECT_LT(test::PeakMemory() - before, test::kModestMemory);
 }
@@ -464,28 +449,29 @@ TEST(PlyReader, ManyElementsAndPropertiesAreRefusedByNumber) {
         elements += fmt::format("element e{} 0\n", i);
         properties += fmt::format("property float p{}\n", i);
     }
-    EXPECT_NE(RefusalOfBytes(elements).find("more than 4096 elements"), std::string::npos);
-    EXPECT_NE(RefusalOfBytes(properties).find("more than 4096 properties"), std::string::npos);
+    EXPECT_NE(RefusalOfPly(elements).find("more than 4096 elements"), std::string::npos);
+    EXPECT_NE(RefusalOfPly(properties).find("more than 4096 properties"), std::string::npos);
 }
 
 // -------- hostile bytes
 
 TEST(PlyReader, DamagedFilesAreReadWholeOrRefusedAtALineOrElement) {
     for (std::string const& whole :
-         {kTriangle, MakeTyped(false), MakeTyped(true), MakePair("6 0 0 1 0 1 1", "6 0 0 1 1 0 1"),
-          MakeStrips("9 0 1 2 3 -1 2 3 4 5"), MakeTextured("comment TextureFile a.png\n")}) {
-        auto const counts = test::ReadDamaged(whole, 2000, "mesh.ply", Parse);
+         {kPlyTriangle, MakeTyped(false), MakeTyped(true),
+          MakePair("6 0 0 1 0 1 1", "6 0 0 1 1 0 1"), MakeStrips("9 0 1 2 3 -1 2 3 4 5"),
+          MakeTextured("comment TextureFile a.png\n")}) {
+        auto const counts = test::ReadDamaged(whole, 2000, "mesh.ply", ParsePly);
         EXPECT_GT(counts.numRead, 20) << whole;
         EXPECT_GT(counts.numRefused, 100) << whole;
     }
 }
 
 TEST(PlyReader, GarbageIsRefused) {
-    std::string const header = kTriangle.substr(0, kTriangle.find("end_header\n") + 11);
+    std::string const header = kPlyTriangle.substr(0, kPlyTriangle.find("end_header\n") + 11);
     for (unsigned seed = 0; seed < 50; ++seed) {
-        EXPECT_THROW(Parse(test::Garbage("", seed)), Error) << seed;
-        EXPECT_THROW(Parse(test::Garbage("ply\n", seed)), Error) << seed;
-        EXPECT_THROW(Parse(test::Garbage(header, seed)), Error) << seed;
+        EXPECT_THROW(ParsePly(test::Garbage("", seed)), Error) << seed;
+        EXPECT_THROW(ParsePly(test::Garbage("ply\n", seed)), Error) << seed;
+        EXPECT_THROW(ParsePly(test::Garbage(header, seed)), Error) << seed;
     }
 }
 

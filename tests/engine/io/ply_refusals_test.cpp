@@ -11,30 +11,20 @@ namespace limn {
 namespace {
 
 using engine::Scene;
+using test::kPlyTriangle;
 using test::Refusal;
+using test::RefusalOfPly;
 
-std::string RefusalOfBytes(std::string const& bytes) {
-    Scene scene;
-    scene.path = "mesh.ply";
-    return test::RefusalOf([&] { engine::ReadPly(bytes, scene); });
-}
-
-std::string const kTriangle =
-    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
-    "z\n"
-    "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 "
-    "1 2\n";
-
-/// kTriangle with something else in place of a part of it.
+/// kPlyTriangle with something else in place of a part of it.
 std::string With(std::string const& part, std::string const& other) {
-    std::string text = kTriangle;
+    std::string text = kPlyTriangle;
     return text.replace(text.find(part), part.size(), other);
 }
 
 class PlyRefusal : public testing::TestWithParam<Refusal> {};
 
 TEST_P(PlyRefusal, NamesLineReasonAndRemedy) {
-    test::ExpectRefusal(GetParam(), RefusalOfBytes(GetParam().text));
+    test::ExpectRefusal(GetParam(), RefusalOfPly(GetParam().text));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -52,7 +42,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "mesh.ply:10: ",
                 {"'0' has no place in a PLY header"}},
         Refusal{"OnlyAHeader",
-                With(kTriangle.substr(kTriangle.find("end_header")), ""),
+                With(kPlyTriangle.substr(kPlyTriangle.find("end_header")), ""),
                 "mesh.ply:8: ",
                 {"no 'end_header'"}},
         Refusal{"UnknownType", With("float x", "quad x"), "mesh.ply:4: ", {"'quad'"}},

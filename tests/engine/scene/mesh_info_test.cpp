@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "far_ext/topology/refiner.h"
+#include "support/mesh_info.h"
 #include "support/meshes.h"
 #include "support/readers.h"
 
@@ -14,10 +15,7 @@ namespace {
 
 using engine::MeshInfo;
 using engine::Scene;
-
-MeshInfo Describe(Scene const& scene) {
-    return engine::DescribeMesh(engine::Model::Build(scene));
-}
+using test::Describe;
 
 engine::Defect const* FindDefect(MeshInfo const& info, std::string const& kind) {
     for (auto const& defect : info.defects) {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/scene/mesh_info.h"
+#include "support/mesh_info.h"
 #include "support/meshes.h"
 #include "support/readers.h"
 
@@ -14,10 +14,7 @@ namespace {
 
 using engine::MeshInfo;
 using engine::Scene;
-
-MeshInfo Describe(Scene const& scene) {
-    return engine::DescribeMesh(engine::Model::Build(scene));
-}
+using test::Describe;
 
 /// A row of separate quads, each with the four texture coordinates given.
 Scene MakeQuads(std::vector<std::array<double, 8>> const& uvs) {

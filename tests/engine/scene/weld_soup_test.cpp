@@ -16,17 +16,9 @@ namespace limn {
 namespace {
 
 using engine::Scene;
+using test::AtCorners;
 
 /// What each corner has of a list with `length` numbers per vertex.
-template <class T>
-std::vector<T> AtCorners(Scene const& scene, std::vector<T> const& values, size_t length) {
-    std::vector<T> atCorners;
-    for (Index vertex : scene.cage.faceVertices) {
-        for (size_t c = 0; c < length; ++c) atCorners.push_back(values[vertex * length + c]);
-    }
-    return atCorners;
-}
-
 /// Faces without any order between vertices of a few places.
 Scene MakeSoup(unsigned seed) {
     std::mt19937 random(seed);

@@ -20,6 +20,7 @@ namespace limn {
 namespace {
 
 using engine::Scene;
+using test::AtCorners;
 
 /// The scene with a vertex for each value of `keys`, which belong to corners: what an exporter
 /// writes that has one index for positions and texture coordinates, or none that is shared.
@@ -122,16 +123,6 @@ void ExpectSameUpToNames(std::vector<Index> const& a, std::vector<Index> const& 
         ASSERT_EQ(toB.try_emplace(a[i], b[i]).first->second, b[i]) << "corner " << i;
         ASSERT_EQ(toA.try_emplace(b[i], a[i]).first->second, a[i]) << "corner " << i;
     }
-}
-
-/// What each corner has of a list with `length` numbers per vertex.
-template <class T>
-std::vector<T> AtCorners(Scene const& scene, std::vector<T> const& values, size_t length) {
-    std::vector<T> atCorners;
-    for (Index vertex : scene.cage.faceVertices) {
-        for (size_t c = 0; c < length; ++c) atCorners.push_back(values[vertex * length + c]);
-    }
-    return atCorners;
 }
 
 /// Creases by where their ends are, with their sharpness.

@@ -27,7 +27,7 @@ Model MakeIcosahedron() {  // of radius 1; mean edge 1.05
     return Model::Build(test::MakeIcosphere(0));
 }
 
-Model MakeCubeModel() {
+Model MakeNamedCube() {
     engine::Scene scene = test::MakeCube();
     scene.name = "cube";
     return Model::Build(std::move(scene));
@@ -45,7 +45,7 @@ double MeasureVolume(engine::Scene const& mesh) {
 }
 
 TEST(Smooth, RoundsACubeInwards) {
-    auto const result = Smooth(MakeCubeModel(), ConstantWidth{0.3});
+    auto const result = Smooth(MakeNamedCube(), ConstantWidth{0.3});
     ASSERT_TRUE(result.mesh);
     EXPECT_EQ(result.mesh->cage.numVertices, 98);
     EXPECT_TRUE(result.report.HasConverged());
@@ -133,7 +133,7 @@ TEST(Smooth, AGraphKeepsXAndY) {
     }
     EXPECT_GT(highest, 0.01);
     EXPECT_NE(test::RefusalOf([&] {
-                  Smooth(MakeCubeModel(), ConstantWidth{0.1}, options);
+                  Smooth(MakeNamedCube(), ConstantWidth{0.1}, options);
               }).find("is folded"),
               std::string::npos);
 }
@@ -163,7 +163,7 @@ TEST(Smooth, EachStoppingRuleCountsAsItSays) {
 
 TEST(Smooth, JacobiSweepsMustBeCounted) {
     EXPECT_EQ(test::CodeOf([] {
-                  Smooth(MakeCubeModel(), ConstantWidth{0.1},
+                  Smooth(MakeNamedCube(), ConstantWidth{0.1},
                          {.solver = eval::CascadeSolver::Jacobi});
               }),
               ErrorCode::BadOption);
@@ -174,7 +174,7 @@ TEST(Smooth, PrecisionIsThatOfJacobiSweeps) {
     SmoothOptions options{.solver = eval::CascadeSolver::Jacobi, .stop = engine::SweepsOnFinest{2}};
     auto const smooth = [&](Precision precision) {
         options.precision = precision;
-        return Smooth(MakeCubeModel(), ConstantWidth{0.3}, options).mesh.value().positions;
+        return Smooth(MakeNamedCube(), ConstantWidth{0.3}, options).mesh.value().positions;
     };
     double const difference =
         test::LargestDifference(smooth(Precision::Float), smooth(Precision::Double));

@@ -14,18 +14,18 @@ namespace {
 
 using far_ext::SubdivisionRule;
 
-struct Reference {
+struct DirMagReference {
     char const *mesh, *rule;
     SubdivisionRule subdivision;
 };
 
-class DirMagOf : public testing::TestWithParam<Reference> {};
+class DirMagOf : public testing::TestWithParam<DirMagReference> {};
 INSTANTIATE_TEST_SUITE_P(
     References, DirMagOf,
-    testing::Values(Reference{"icosa", "loop", SubdivisionRule::Scheme},
-                    Reference{"icosa", "butterfly", SubdivisionRule::Butterfly},
-                    Reference{"torustri", "loop", SubdivisionRule::Scheme},
-                    Reference{"torustri", "butterfly", SubdivisionRule::Butterfly}));
+    testing::Values(DirMagReference{"icosa", "loop", SubdivisionRule::Scheme},
+                    DirMagReference{"icosa", "butterfly", SubdivisionRule::Butterfly},
+                    DirMagReference{"torustri", "loop", SubdivisionRule::Scheme},
+                    DirMagReference{"torustri", "butterfly", SubdivisionRule::Butterfly}));
 
 // The first level by direction and magnitude, the second linearly, then reconstruction.
 TEST_P(DirMagOf, TheReferenceIsMet) {

@@ -39,23 +39,25 @@ struct Differential {
     }
 };
 
-struct Reference {
+struct DifferentialReference {
     char const *mesh, *rule;
     SubdivisionRule subdivision;
     Sdc::SchemeType scheme;
 };
 
-class DifferentialOf : public testing::TestWithParam<Reference> {};
+class DifferentialOf : public testing::TestWithParam<DifferentialReference> {};
 INSTANTIATE_TEST_SUITE_P(
     References, DifferentialOf,
     testing::Values(
-        Reference{"icosa", "loop", SubdivisionRule::Scheme, Sdc::SCHEME_LOOP},
-        Reference{"icosa", "butterfly", SubdivisionRule::Butterfly, Sdc::SCHEME_LOOP},
-        Reference{"torustri", "loop", SubdivisionRule::Scheme, Sdc::SCHEME_LOOP},
-        Reference{"torustri", "butterfly", SubdivisionRule::Butterfly, Sdc::SCHEME_LOOP},
-        Reference{"gridholetri", "loop", SubdivisionRule::Scheme, Sdc::SCHEME_LOOP},
-        Reference{"gridholetri", "butterfly", SubdivisionRule::Butterfly, Sdc::SCHEME_LOOP},
-        Reference{"cube", "cc", SubdivisionRule::Scheme, Sdc::SCHEME_CATMARK}));
+        DifferentialReference{"icosa", "loop", SubdivisionRule::Scheme, Sdc::SCHEME_LOOP},
+        DifferentialReference{"icosa", "butterfly", SubdivisionRule::Butterfly, Sdc::SCHEME_LOOP},
+        DifferentialReference{"torustri", "loop", SubdivisionRule::Scheme, Sdc::SCHEME_LOOP},
+        DifferentialReference{"torustri", "butterfly", SubdivisionRule::Butterfly,
+                              Sdc::SCHEME_LOOP},
+        DifferentialReference{"gridholetri", "loop", SubdivisionRule::Scheme, Sdc::SCHEME_LOOP},
+        DifferentialReference{"gridholetri", "butterfly", SubdivisionRule::Butterfly,
+                              Sdc::SCHEME_LOOP},
+        DifferentialReference{"cube", "cc", SubdivisionRule::Scheme, Sdc::SCHEME_CATMARK}));
 
 // An independent implementation's coordinates and positions: closed, two boundary loops, quads.
 TEST_P(DifferentialOf, TheReferenceIsMet) {

@@ -19,13 +19,13 @@ using eval::FaceTree;
 using eval::LimitSurface;
 
 /// A scene with its surface and a tree of its positions.
-struct Subject {
+struct TreeSubject {
     engine::Scene scene;
     std::unique_ptr<Far::TopologyRefiner> refiner;
     LimitSurface surface;
     FaceTree tree;
 
-    explicit Subject(engine::Scene made)
+    explicit TreeSubject(engine::Scene made)
         : scene(std::move(made)),
           refiner(far_ext::CreateRefiner(scene.cage)),
           surface(*refiner),
@@ -60,7 +60,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, FaceTreeOf,
 
 // Two roads to one piece: alone, and sorted among others.
 TEST_P(FaceTreeOf, ARunHasTheSamplesWhereEachIsFoundAlone) {
-    Subject subject(GetParam()());
+    TreeSubject subject(GetParam()());
     FaceTree& tree = subject.tree;
     bool const isLoop = subject.surface.IsLoop();
     std::vector<double> s, t;
@@ -94,7 +94,7 @@ TEST_P(FaceTreeOf, ARunHasTheSamplesWhereEachIsFoundAlone) {
 }
 
 TEST_P(FaceTreeOf, WeightsTimesPointsAreTheValues) {
-    Subject subject(GetParam()());
+    TreeSubject subject(GetParam()());
     FaceTree weights(subject.surface, std::vector<FaceTree::Values>{});
     far_ext::Points const points(subject.scene.positions);
     subject.tree.Bind(0);
@@ -109,7 +109,7 @@ TEST_P(FaceTreeOf, WeightsTimesPointsAreTheValues) {
 }
 
 TEST_P(FaceTreeOf, AfterWeightsItBindsValuesAgain) {
-    Subject subject(GetParam()());
+    TreeSubject subject(GetParam()());
     subject.tree.Bind(0);
     auto const before = eval::EvaluateDerivatives(subject.tree, 0, 0.3, 0.4).position;
     subject.tree.BindWeights(0);
@@ -119,7 +119,7 @@ TEST_P(FaceTreeOf, AfterWeightsItBindsValuesAgain) {
 }
 
 TEST_P(FaceTreeOf, BoundsOfANodeHoldItsLimit) {
-    Subject subject(GetParam()());
+    TreeSubject subject(GetParam()());
     FaceTree& tree = subject.tree;
     std::vector<double> s, t;
     MakeGrid(subject.surface.IsLoop(), s, t);
@@ -136,7 +136,7 @@ TEST_P(FaceTreeOf, BoundsOfANodeHoldItsLimit) {
 }
 
 TEST(FaceTree, PartsAreChannelsSideBySide) {
-    Subject subject(test::MakeCube());
+    TreeSubject subject(test::MakeCube());
     std::vector<double> ones(8, 1.0);
     FaceTree tree(subject.surface, {{subject.scene.positions, 3}, {ones, 1}});
     tree.Bind(0);
@@ -145,7 +145,7 @@ TEST(FaceTree, PartsAreChannelsSideBySide) {
 }
 
 TEST(FaceTree, ValuesThatAreTooShortAreRefused) {
-    Subject subject(test::MakeCube());
+    TreeSubject subject(test::MakeCube());
     std::vector<double> const six(6), seven(7);
     ExpectRefusal([&] { FaceTree(subject.surface, six, 3); },
                   "control points: 6 values are too few for 8 vertices of 3");
@@ -169,7 +169,7 @@ TEST(FaceTree, FaceVaryingValuesThatAreTooShortAreRefused) {
 }
 
 TEST(FaceTree, AFaceThatDoesNotExistIsRefusedAndTheLastOneStays) {
-    Subject subject(test::MakeCube());
+    TreeSubject subject(test::MakeCube());
     subject.tree.Bind(4);
     auto const before = eval::EvaluateDerivatives(subject.tree, 0, 0.3, 0.4).position;
     for (auto bind : {&FaceTree::Bind, &FaceTree::BindWeights}) {
@@ -185,13 +185,13 @@ TEST(FaceTree, AFaceThatDoesNotExistIsRefusedAndTheLastOneStays) {
 TEST(FaceTree, AFaceWithoutALimitIsRefused) {
     auto scene = test::MakeCube();
     scene.cage.holes = {2};
-    Subject subject(scene);
+    TreeSubject subject(scene);
     ExpectRefusal([&] { subject.tree.Bind(2); }, "face 2 has no limit");
     ExpectRefusal([&] { subject.tree.BindWeights(2); }, "face 2 has no limit");
 }
 
 TEST(FaceTree, ADomainThatDoesNotExistIsRefused) {
-    Subject subject(test::MakePrism(5));  // pentagons below and above
+    TreeSubject subject(test::MakePrism(5));  // pentagons below and above
     subject.tree.Bind(1);
     std::string const message = "domain 5 does not exist; face 1 has domains 0 to 4";
     std::vector<double> const half{0.5};
@@ -205,7 +205,7 @@ TEST(FaceTree, ADomainThatDoesNotExistIsRefused) {
 }
 
 TEST(FaceTree, APlaceOutsideItsDomainIsRefused) {
-    Subject subject(test::MakeCube());
+    TreeSubject subject(test::MakeCube());
     subject.tree.Bind(0);
     std::string const message = "(1.5, -3) lies outside domain 0 of face 0";
     ExpectRefusal([&] { subject.tree.Locate(0, 1.5, -3.0, 5); }, message);
@@ -218,7 +218,7 @@ TEST(FaceTree, APlaceOutsideItsDomainIsRefused) {
 }
 
 TEST(FaceTree, SamplesOutsideTheirDomainOrWithoutAPartnerAreRefused) {
-    Subject subject(test::MakeCube());
+    TreeSubject subject(test::MakeCube());
     subject.tree.Bind(0);
     std::vector<double> const s{0.5, 0.5, 1.5}, t{0.5, 0.5, -3.0};
     auto const visit = [](auto const&) { ADD_FAILURE() << "a sample was visited"; };
@@ -229,14 +229,14 @@ TEST(FaceTree, SamplesOutsideTheirDomainOrWithoutAPartnerAreRefused) {
 }
 
 TEST(FaceTree, NothingIsAskedBeforeTheFirstBind) {
-    Subject subject(test::MakeCube());
+    TreeSubject subject(test::MakeCube());
     EXPECT_EQ(subject.tree.GetFace(), -1);
     ExpectRefusal([&] { subject.tree.Locate(0, 0.5, 0.5, 5); }, "FaceTree: no face is bound");
     ExpectRefusal([&] { subject.tree.GetBounds(0, 0); }, "FaceTree: no face is bound");
 }
 
 TEST(FaceTree, ANodeThatDoesNotExistIsRefused) {
-    Subject subject(test::MakeCube());
+    TreeSubject subject(test::MakeCube());
     FaceTree& tree = subject.tree;
     tree.Bind(0);
     int const root = tree.GetRoot(0);
@@ -253,14 +253,14 @@ TEST(FaceTree, ANodeThatDoesNotExistIsRefused) {
 }
 
 TEST(FaceTree, ALeafHasNoChildren) {
-    Subject subject(test::MakeTorus(5, 4));  // regular
+    TreeSubject subject(test::MakeTorus(5, 4));  // regular
     subject.tree.Bind(0);
     ExpectRefusal([&] { subject.tree.GetChild(subject.tree.GetRoot(0), 0); },
                   "child 0 does not exist; node 0 has 0");
 }
 
 TEST(FaceTree, AChannelThatDoesNotExistIsRefused) {
-    Subject subject(test::MakeCube());
+    TreeSubject subject(test::MakeCube());
     std::vector<double> const pairs(16);
     FaceTree tree(subject.surface, pairs, 2);
     tree.Bind(0);

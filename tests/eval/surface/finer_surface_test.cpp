@@ -14,13 +14,13 @@ namespace {
 using eval::FinerSurface;
 
 /// A cage, the cage refined, and the latter's limit.
-struct Subject {
+struct FinerSubject {
     engine::Scene scene, fine;
     std::unique_ptr<Far::TopologyRefiner> refiner;
     eval::LimitSurface surface;
     std::optional<FinerSurface> finer;
 
-    Subject(engine::Scene made, int levels)
+    FinerSubject(engine::Scene made, int levels)
         : scene(std::move(made)),
           fine(test::Refine(scene, levels)),
           refiner(far_ext::CreateRefiner(scene.cage)),
@@ -32,7 +32,7 @@ struct Subject {
 TEST(FinerSurface, OfARefinedCageIsItsLimit) {
     for (auto const& scene :
          {test::MakeCube(), test::MakeFan(5, Sdc::SCHEME_LOOP, 0.2, 0.1), test::MakePrism(5)}) {
-        Subject const subject(scene, 2);
+        FinerSubject const subject(scene, 2);
         ASSERT_TRUE(subject.finer);
         FinerSurface::Sampler sampler(*subject.finer);
         eval::FaceTree tree(subject.surface, scene.positions, 3);
@@ -49,7 +49,7 @@ TEST(FinerSurface, OfARefinedCageIsItsLimit) {
 
 // What a place lies outside of its domain doubles with each level.
 TEST(FinerSurface, SlackAtABorderIsAllowedOnEveryLevel) {
-    Subject const subject(test::MakeCube(), 4);
+    FinerSubject const subject(test::MakeCube(), 4);
     FinerSurface::Sampler sampler(*subject.finer);
     std::vector<double> const s{-1e-12, 1.0 + 1e-12}, t{0.5, 0.5};
     std::vector<Eigen::Vector3d> points(2);
@@ -57,14 +57,14 @@ TEST(FinerSurface, SlackAtABorderIsAllowedOnEveryLevel) {
 }
 
 TEST(FinerSurface, OtherFacesMakeNone) {
-    Subject const subject(test::MakeCube(), 1);
+    FinerSubject const subject(test::MakeCube(), 1);
     auto const torus = test::MakeTorus(5, 4);
     EXPECT_FALSE(
         FinerSurface::Build(subject.surface, subject.scene.cage, torus.cage, torus.positions));
 }
 
 TEST(FinerSurface, WhatIsOutOfRangeIsRefused) {
-    Subject const subject(test::MakeCube(), 1);
+    FinerSubject const subject(test::MakeCube(), 1);
     EXPECT_EQ(test::RefusalOf([&] {
                   FinerSurface::Build(subject.surface, subject.scene.cage, subject.fine.cage,
                                       subject.scene.positions);

@@ -26,7 +26,7 @@ engine::BakeReport MakeReport() {
     return report;
 }
 
-engine::GaussBonnetAudit AuditOf(Scene const& scene, int size) {
+engine::GaussBonnetAudit GaussBonnetOf(Scene const& scene, int size) {
     engine::BakeOptions options;
     options.width = options.height = size;
     auto const report = MakeReport();
@@ -92,7 +92,7 @@ TEST_P(Lantern, WithDiscsTheSumIsNearer) {
     Scene const scene = MakeLantern(GetParam());
     int const cells = GetParam() <= 8 ? 7 : 9;
     for (int texels : {12, 16, 24, 32}) {
-        auto const audit = AuditOf(scene, cells * texels);
+        auto const audit = GaussBonnetOf(scene, cells * texels);
         ASSERT_TRUE(audit.wasAudited) << audit.reason;
         EXPECT_NEAR(audit.expected, 4 * std::acos(-1.0), 1e-12);
         double const apart = std::abs(audit.integral - audit.expected),
@@ -104,14 +104,14 @@ TEST_P(Lantern, WithDiscsTheSumIsNearer) {
 
 // At valence 3 curvature falls to zero, and texels alone do well; discs must not spoil it.
 TEST(GaussBonnet, HoldsWhereAllExtraordinaryVerticesHaveValenceThree) {
-    EXPECT_LT(AuditOf(MakeLantern(3), 7 * 16).relativeError, 5e-4);
+    EXPECT_LT(GaussBonnetOf(MakeLantern(3), 7 * 16).relativeError, 5e-4);
 }
 
 // Texels alone gain less than the square of their number, which is what the sum gains where
 // curvature is smooth.
 TEST(GaussBonnet, WithDiscsTheSumConvergesQuadratically) {
     Scene const scene = MakeLantern(8);
-    auto const coarse = AuditOf(scene, 7 * 16), fine = AuditOf(scene, 7 * 64);
+    auto const coarse = GaussBonnetOf(scene, 7 * 16), fine = GaussBonnetOf(scene, 7 * 64);
     EXPECT_LT(std::abs(fine.integral - fine.expected),
               std::abs(coarse.integral - coarse.expected) / 14);
     EXPECT_GT(std::abs(fine.texelSum - fine.expected),
@@ -124,7 +124,7 @@ TEST(GaussBonnet, SpotGainsByDiscs) {
     Scene const spot = test::LoadSpot();
     double apart = 0.0, alone = 0.0;
     for (int size : {500, 600, 700}) {
-        auto const audit = AuditOf(spot, size);
+        auto const audit = GaussBonnetOf(spot, size);
         ASSERT_TRUE(audit.wasAudited) << audit.reason;
         apart += std::abs(audit.integral - audit.expected);
         alone += std::abs(audit.texelSum - audit.expected);
@@ -226,9 +226,9 @@ TEST_F(DiscsOf, TheShareOfTexelsRisesFromTheVertex) {
 
 TEST(GaussBonnet, IsTheSameForAnyNumberOfThreads) {
     Scene const spot = test::LoadSpot();
-    auto const many = AuditOf(spot, 300);
+    auto const many = GaussBonnetOf(spot, 300);
     tbb::global_control const one(tbb::global_control::max_allowed_parallelism, 1);
-    auto const single = AuditOf(spot, 300);
+    auto const single = GaussBonnetOf(spot, 300);
     EXPECT_EQ(many.integral, single.integral);
     EXPECT_EQ(many.relativeError, single.relativeError);
 }
@@ -237,13 +237,14 @@ TEST(GaussBonnet, OpenAndCreasedComponentsAreListedWithTheReason) {
     Scene lantern = MakeLantern(5);
     lantern.cage.cornerVertices = {0};
     lantern.cage.cornerSharpness = {10.0f};
-    EXPECT_EQ(AuditOf(lantern, 70).reason, "it has infinitely sharp corners");
+    EXPECT_EQ(GaussBonnetOf(lantern, 70).reason, "it has infinitely sharp corners");
     lantern.cage.cornerSharpness = {2.0f};
-    EXPECT_TRUE(AuditOf(lantern, 7 * 32).wasAudited);
+    EXPECT_TRUE(GaussBonnetOf(lantern, 7 * 32).wasAudited);
     lantern.cage.holes = {3};
-    EXPECT_EQ(AuditOf(lantern, 70).reason, "it has a hole");
+    EXPECT_EQ(GaussBonnetOf(lantern, 70).reason, "it has a hole");
     lantern.cage.scheme = Sdc::SCHEME_BILINEAR;
-    EXPECT_EQ(AuditOf(lantern, 70).reason, "a bilinear surface has a crease along every edge");
+    EXPECT_EQ(GaussBonnetOf(lantern, 70).reason,
+              "a bilinear surface has a crease along every edge");
 }
 
 }  // namespace
