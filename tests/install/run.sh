@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs a build tree into a scratch prefix, builds the programs of this folder and of the examples
 # against it, and holds what they print to docs/library.md and to laws.
-# usage: run.sh BUILD-TREE SOURCE-TREE SCRATCH
+# usage: run.sh BUILD-TREE SOURCE-TREE SCRATCH GROUPED
+# GROUPED: 1 to compile sources in groups, as the build tree does
 # shellcheck disable=SC2016  # fields of awk's and addresses of sed's are not for the shell
 set -eu
-build=$1 source=$2 scratch=$3
+build=$1 source=$2 scratch=$3 grouped=$4
 
 rm -rf "$scratch"
 cmake --install "$build" --prefix "$scratch/prefix" >/dev/null
@@ -13,7 +14,7 @@ PATH="$scratch/prefix/bin:$PATH"
 for programs in tests/install examples/evaluator examples/library; do
     tree="$scratch/$programs"
     cmake -S "$source/$programs" -B "$tree" -G Ninja -DCMAKE_PREFIX_PATH="$scratch/prefix" \
-        -DCMAKE_CXX_FLAGS='-Wall -Werror' >/dev/null
+        -DCMAKE_CXX_FLAGS='-Wall -Werror' -DCMAKE_UNITY_BUILD="$grouped" >/dev/null
     cmake --build "$tree" -- --quiet
     PATH="$tree:$PATH"
 done
