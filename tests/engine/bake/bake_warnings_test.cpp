@@ -61,12 +61,12 @@ TEST(BakeWarnings, NothingIsSaidOfASoundMesh) {
 
 TEST(BakeWarnings, FacesWithoutTextureAreaAreCountedAsInfoCountsThem) {
     Scene scene = test::MakeTorus(6, 4);
-    EXPECT_EQ(WarningsOf(scene, MakeOptions({"position"})), Words{});
+    EXPECT_EQ(WarningsOf(scene, MakeMapOptions({"position"})), Words{});
     auto& values = scene.cage.fvarChannels.at(0).valueIndices;
     for (size_t face : {5u, 9u, 20u})
         std::fill_n(values.begin() + static_cast<long>(4 * face), 4, values[4 * face]);
     EXPECT_EQ(engine::DescribeUVs(engine::Model::Build(scene)).zeroAreaFaces, 3u);
-    std::string const warning = WarningOf(scene, MakeOptions({"position"}));
+    std::string const warning = WarningOf(scene, MakeMapOptions({"position"}));
     EXPECT_TRUE(Contains(warning, "3 of 24 faces have no area in the texture")) << warning;
     EXPECT_TRUE(Contains(warning, "first face 5")) << warning;
 }

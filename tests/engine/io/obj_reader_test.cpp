@@ -129,7 +129,7 @@ TEST(ObjReader, FreeFormGeometryIsNamedInOneWarning) {
 }
 
 TEST(ObjReader, WhatStandsInOtherFilesIsNamed) {
-    Scene const scene = Parse(kQuad + "call part.obj\ncsh -cat part.obj\n");
+    Scene const scene = ParseObj(kObjQuad + "call part.obj\ncsh -cat part.obj\n");
     ASSERT_EQ(scene.warnings.size(), 1u);
     EXPECT_EQ(scene.warnings[0],
               "mesh.obj:6: what stands in other files is not read: 2 lines ('call', 'csh')");
@@ -305,12 +305,12 @@ TEST(ObjReader, CornerTagNamesOneVertexOrMore) {
 }
 
 TEST(ObjReader, ValuesThatATagDoesNotTakeAreWarnedOf) {
-    Scene const scene = Parse(kQuad + "t crease 2/1/0 0 1 2.5 7 # 8\nt hole 1/0/0 0 1\n");
+    Scene const scene = ParseObj(kObjQuad + "t crease 2/1/0 0 1 2.5 7 # 8\nt hole 1/0/0 0 1\n");
     EXPECT_EQ(scene.cage.creaseVertexPairs, (std::vector<Index>{0, 1}));
     EXPECT_EQ(scene.warnings,
               (std::vector<std::string>{"mesh.obj:6: 2 lines ('crease', 'hole') of tags with more "
                                         "values than they take, which are not read"}));
-    EXPECT_TRUE(Parse(kQuad + "t crease 2/1/0 0 1 2.5 # 7\n").warnings.empty());
+    EXPECT_TRUE(ParseObj(kObjQuad + "t crease 2/1/0 0 1 2.5 # 7\n").warnings.empty());
 }
 
 TEST(ObjReader, HoleTagNamesFacesByZeroBasedIndex) {

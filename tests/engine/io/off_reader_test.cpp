@@ -39,21 +39,22 @@ TEST(OffReader, CountsMayStickToTheKeyword) {
 }
 
 TEST(OffReader, LinesBehindTheLastFaceAreWarnedOf) {
-    Scene const scene = Parse(kQuad + "\n# end\n3 0 1 2\n4 3 2 1 0\n");
+    Scene const scene = ParseOff(kOffQuad + "\n# end\n3 0 1 2\n4 3 2 1 0\n");
     EXPECT_EQ(scene.cage.faceSizes, (std::vector<Index>{4}));
     EXPECT_EQ(scene.warnings,
               (std::vector<std::string>{
                   "mesh.off:10: 2 lines behind the last face that the file counts, not read"}));
-    EXPECT_TRUE(Parse(kQuad + "\n# end\n \n").warnings.empty());
+    EXPECT_TRUE(ParseOff(kOffQuad + "\n# end\n \n").warnings.empty());
 }
 
 TEST(OffReader, NumbersOfAVertexThatTheKeywordDoesNotNameAreWarnedOf) {
-    Scene const scene = Parse("OFF\n3 1 0\n0 0 0\n1 0 0 9 9 9\n0 1 0 9 # a comment\n3 0 1 2\n");
+    Scene const scene = ParseOff("OFF\n3 1 0\n0 0 0\n1 0 0 9 9 9\n0 1 0 9 # a comment\n3 0 1 2\n");
     EXPECT_EQ(scene.positions, (std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0}));
     ASSERT_EQ(scene.warnings.size(), 1u);
     EXPECT_EQ(scene.warnings[0].find("mesh.off:4: 2 lines of vertices with more than"), 0u)
         << scene.warnings[0];
-    EXPECT_TRUE(Parse("OFF\n3 1 0\n0 0 0\n1 0 0 # 9\n0 1 0\n3 0 1 2 255 0 0\n").warnings.empty());
+    EXPECT_TRUE(
+        ParseOff("OFF\n3 1 0\n0 0 0\n1 0 0 # 9\n0 1 0\n3 0 1 2 255 0 0\n").warnings.empty());
 }
 
 TEST(OffReader, NormalsAreSkipped) {

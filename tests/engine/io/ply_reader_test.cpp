@@ -103,18 +103,18 @@ TEST(PlyReader, CrlfAndMissingLastLineEndChangeNothing) {
 }
 
 TEST(PlyReader, WhatFollowsTheLastRowIsWarnedOfUnlessItIsWhiteSpace) {
-    EXPECT_EQ(Parse(kTriangle + "3 2 1 0\n\n3 0 2 1\n").warnings,
+    EXPECT_EQ(ParsePly(kPlyTriangle + "3 2 1 0\n\n3 0 2 1\n").warnings,
               (std::vector<std::string>{
                   "mesh.ply: 2 lines behind the last row that the header counts, not read"}));
-    EXPECT_TRUE(Parse(kTriangle + " \n\t\n").warnings.empty());
+    EXPECT_TRUE(ParsePly(kPlyTriangle + " \n\t\n").warnings.empty());
     for (bool isBig : {false, true}) {
         std::string const bytes = MakeTyped(isBig);
-        EXPECT_EQ(Parse(bytes + "\n\1\2\n").warnings,
+        EXPECT_EQ(ParsePly(bytes + "\n\1\2\n").warnings,
                   (std::vector<std::string>{
                       "mesh.ply: 3 bytes behind the last row that the header counts, not read"}));
-        EXPECT_EQ(Parse(bytes + '\0').warnings.size(), 1u);
-        EXPECT_TRUE(Parse(bytes + " \r\n").warnings.empty());
-        EXPECT_TRUE(Parse(bytes).warnings.empty());
+        EXPECT_EQ(ParsePly(bytes + '\0').warnings.size(), 1u);
+        EXPECT_TRUE(ParsePly(bytes + " \r\n").warnings.empty());
+        EXPECT_TRUE(ParsePly(bytes).warnings.empty());
     }
 }
 

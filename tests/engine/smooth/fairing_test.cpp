@@ -25,15 +25,15 @@ using engine::Job;
 using engine::Model;
 using engine::SmoothOptions;
 
-engine::SmoothResult Smooth(engine::Scene const& scene, engine::FilterWidths const& widths,
-                            SmoothOptions const& options) {
+engine::SmoothResult SmoothScene(engine::Scene const& scene, engine::FilterWidths const& widths,
+                                 SmoothOptions const& options) {
     Job job;
     return engine::Smooth(Model::Build(scene), widths, options, job);
 }
 
 std::vector<double> Fair(engine::Scene const& scene, double width, SmoothOptions options = {}) {
     options.levels = 0;
-    return Smooth(scene, ConstantWidth{width}, options).mesh.value().positions;
+    return SmoothScene(scene, ConstantWidth{width}, options).mesh.value().positions;
 }
 
 SmoothOptions const kExact{.levels = 0, .solver = eval::CascadeSolver::Exact};
@@ -79,7 +79,7 @@ TEST(Fairing, AQuadIsTheMeanOfItsDiagonals) {
 
 TEST(Fairing, KeepsTopologyTexturesAndTheOrderOfVertices) {
     auto const scene = engine::ReadMesh(test::ScenePath("cube/cube.obj"));
-    auto const found = Smooth(scene, ConstantWidth{0.0}, {.levels = 0}).mesh.value();
+    auto const found = SmoothScene(scene, ConstantWidth{0.0}, {.levels = 0}).mesh.value();
     EXPECT_EQ(found.cage.faceVertices, scene.cage.faceVertices);
     EXPECT_EQ(found.cage.faceSizes, scene.cage.faceSizes);
     EXPECT_EQ(found.cage.fvarChannels[0].valueIndices, scene.cage.fvarChannels[0].valueIndices);
@@ -113,8 +113,9 @@ TEST(Fairing, ASphereShrinksByItsLawInEachStep) {
 // With the metric of the result, r + sigma^2 / r = r0.
 TEST(Fairing, ASphereSettlesAtItsFixedPoint) {
     double const width = 0.4, radius = (1.0 + std::sqrt(1.0 - 4.0 * width * width)) / 2.0;
-    auto const found = Smooth(test::MakeIcosphere(3), ConstantWidth{width},
-                              {.levels = 0, .settle = 1e-5, .solver = eval::CascadeSolver::Exact});
+    auto const found =
+        SmoothScene(test::MakeIcosphere(3), ConstantWidth{width},
+                    {.levels = 0, .settle = 1e-5, .solver = eval::CascadeSolver::Exact});
     EXPECT_NEAR(test::MeanRadius(found.mesh.value().positions), radius, 2e-3);
     auto const& moves = found.report.settleMoves;
     ASSERT_GT(moves.size(), 2u);
@@ -129,10 +130,10 @@ TEST(Fairing, ASphereSettlesAtItsFixedPoint) {
 TEST(Fairing, WhatHasSettledSolvesTheEquationOfItsOwnMetric) {
     auto const scene = test::LoadMesh("icosa");
     SmoothOptions options{.levels = 2, .solver = eval::CascadeSolver::Exact};
-    auto const start = Smooth(scene, ConstantWidth{0.0}, options).mesh.value();
+    auto const start = SmoothScene(scene, ConstantWidth{0.0}, options).mesh.value();
     auto const residual = [&](std::optional<double> settle) {
         options.settle = settle;
-        auto const found = Smooth(scene, ConstantWidth{0.5}, options).mesh.value();
+        auto const found = SmoothScene(scene, ConstantWidth{0.5}, options).mesh.value();
         test::DenseFilter const dense(found.cage.faceVertices, found.positions);
         return test::LargestOf((dense.M + 0.5 * 0.5 / 2 * dense.L) * test::ToRows(found.positions) -
                                dense.M * test::ToRows(start.positions));
@@ -157,10 +158,10 @@ TEST(Fairing, LaterStepsRunOnTheFinestMesh) {
     auto const scene = test::LoadMesh("icosa");
     double const width = 0.3;
     SmoothOptions const once{.levels = 2, .solver = eval::CascadeSolver::Exact};
-    auto const first = Smooth(scene, ConstantWidth{width / std::sqrt(2.0)}, once).mesh.value();
+    auto const first = SmoothScene(scene, ConstantWidth{width / std::sqrt(2.0)}, once).mesh.value();
     auto twice = once;
     twice.steps = 2;
-    auto const both = Smooth(scene, ConstantWidth{width}, twice);
+    auto const both = SmoothScene(scene, ConstantWidth{width}, twice);
     EXPECT_LT(test::LargestDifference(Fair(first, width / std::sqrt(2.0), kExact),
                                       both.mesh.value().positions),
               1e-13);
@@ -174,9 +175,9 @@ TEST(Fairing, LaterStepsRunOnTheFinestMesh) {
 TEST(Fairing, ComponentsDoNotFeelEachOther) {
     auto const a = test::MakeIcosphere(2), b = test::LoadMesh("gridholetri");
     SmoothOptions const options{.levels = 0, .steps = 3, .solver = eval::CascadeSolver::Exact};
-    auto const both = Smooth(test::Join({a, b}), ConstantWidth{0.2}, options).mesh->positions;
-    std::vector<double> apart = Smooth(a, ConstantWidth{0.2}, options).mesh->positions;
-    auto const other = Smooth(b, ConstantWidth{0.2}, options).mesh->positions;
+    auto const both = SmoothScene(test::Join({a, b}), ConstantWidth{0.2}, options).mesh->positions;
+    std::vector<double> apart = SmoothScene(a, ConstantWidth{0.2}, options).mesh->positions;
+    auto const other = SmoothScene(b, ConstantWidth{0.2}, options).mesh->positions;
     apart.insert(apart.end(), other.begin(), other.end());
     EXPECT_LT(test::LargestDifference(both, apart, true), 1e-12 * test::BoxDiagonal(both));
 }
@@ -196,19 +197,19 @@ TEST(Fairing, DoesNotDependOnWhereAMeshLies) {
 
 // A single solve exists for all widths: r / (1 + sigma^2 / r^2) of sigma = 2 r is a fifth.
 TEST(Fairing, WithoutRepetitionNothingCollapses) {
-    auto const wide = Smooth(test::MakeIcosphere(3), ConstantWidth{2.0}, {.levels = 0});
+    auto const wide = SmoothScene(test::MakeIcosphere(3), ConstantWidth{2.0}, {.levels = 0});
     ASSERT_TRUE(wide.mesh);
     EXPECT_FALSE(wide.report.hasCollapsed);
     EXPECT_NEAR(wide.report.shrinkage.value().radiusRatio, 0.2, 1e-3);
     auto const settled =
-        Smooth(test::MakeIcosphere(3), ConstantWidth{2.0}, {.levels = 0, .settle = 1e-5});
+        SmoothScene(test::MakeIcosphere(3), ConstantWidth{2.0}, {.levels = 0, .settle = 1e-5});
     EXPECT_FALSE(settled.mesh);
     EXPECT_TRUE(settled.report.hasCollapsed);
 }
 
 TEST(Fairing, KeepsVolumesInAllSteps) {
     auto const scene = test::MakeIcosphere(2);
-    auto const found = Smooth(
+    auto const found = SmoothScene(
         scene, ConstantWidth{0.3},
         {.levels = 0, .steps = 3, .settle = 1e-3, .constraint = engine::SmoothConstraint::Volume});
     ASSERT_EQ(found.report.volumes.size(), 1u);

@@ -27,14 +27,15 @@ using engine::Model;
 using engine::SmoothOptions;
 using eval::CascadeSolver;
 
-engine::SmoothResult Smooth(engine::Scene const& scene, double width, SmoothOptions options) {
+engine::SmoothResult FairOnce(engine::Scene const& scene, double width, SmoothOptions options) {
     options.levels = 0;
     Job job;
     return engine::Smooth(Model::Build(scene), ConstantWidth{width}, options, job);
 }
 
-std::vector<double> Fair(engine::Scene const& scene, double width, SmoothOptions const& options) {
-    return Smooth(scene, width, options).mesh.value().positions;
+std::vector<double> FairWith(engine::Scene const& scene, double width,
+                             SmoothOptions const& options) {
+    return FairOnce(scene, width, options).mesh.value().positions;
 }
 
 /// X of (M + b L M^-1 L) X = M X0, b = sigma^4 / 4, with Y = M^-1 L X 0 where vertices are fixed:
@@ -67,10 +68,10 @@ TEST(FourthOrder, SolvesItsEquationByBothSolvers) {
         double const width = 0.5 * test::MeasureEdges(scene).mean,
                      size = test::BoxDiagonal(scene.positions);
         Eigen::MatrixXd const X = SolveFourthOrder(scene, width);
-        auto const exact = Fair(scene, width, {.order = 4, .solver = CascadeSolver::Exact});
+        auto const exact = FairWith(scene, width, {.order = 4, .solver = CascadeSolver::Exact});
         EXPECT_LT(test::LargestOf(test::ToRows(exact) - X), 1e-12 * size) << name;
         auto const found =
-            Smooth(scene, width, {.order = 4, .stop = engine::StopAtResidual{1e-11}});
+            FairOnce(scene, width, {.order = 4, .stop = engine::StopAtResidual{1e-11}});
         EXPECT_TRUE(found.report.HasConverged());
         EXPECT_LT(test::LargestOf(test::ToRows(found.mesh->positions) - X), 1e-9 * size) << name;
     }
@@ -83,7 +84,7 @@ TEST(FourthOrder, ASphereShrinksByItsLaw) {
         for (int step = 0; step < steps; ++step)
             radius /= 1.0 + std::pow(0.4, 4) / (steps * std::pow(radius, 4));
         EXPECT_NEAR(
-            test::MeanRadius(Fair(test::MakeIcosphere(4), 0.4, {.steps = steps, .order = 4})),
+            test::MeanRadius(FairWith(test::MakeIcosphere(4), 0.4, {.steps = steps, .order = 4})),
             radius, 2e-5)
             << steps;
     }
@@ -92,7 +93,7 @@ TEST(FourthOrder, ASphereShrinksByItsLaw) {
 // Both orders halve what has k^2 = 2 / sigma^2: the coordinates of a sphere of radius sigma.
 TEST(FourthOrder, HasAGainOfOneHalfWhereTheSecondHas) {
     for (int order : {2, 4})
-        EXPECT_NEAR(test::MeanRadius(Fair(test::MakeIcosphere(4), 1.0, {.order = order})), 0.5,
+        EXPECT_NEAR(test::MeanRadius(FairWith(test::MakeIcosphere(4), 1.0, {.order = order})), 0.5,
                     1e-3);
 }
 
@@ -100,7 +101,7 @@ TEST(FourthOrder, LosesLessOfTheVolume) {
     auto scene = test::MakeIcosphere(3);
     test::AddNoise(scene, 0.05, 7);
     auto const volumeOf = [&](int order) {
-        auto mesh = Smooth(scene, 0.2, {.order = order}).mesh.value();
+        auto mesh = FairOnce(scene, 0.2, {.order = order}).mesh.value();
         auto const model = Model::Build(std::move(mesh));
         return engine::MeasureExtent(model, model.GetPositions()).volume.value();
     };
@@ -116,9 +117,9 @@ TEST(KeptFeatures, AnInfiniteBoundIsThePlainFilter) {
         auto const scene = test::LoadMesh(name);
         double const width = 0.3 * test::MeasureEdges(scene).mean;
         SmoothOptions options{.steps = 2, .solver = CascadeSolver::Exact};
-        auto const plain = Fair(scene, width, options);
+        auto const plain = FairWith(scene, width, options);
         options.keptFeatures = infinite;
-        EXPECT_LT(test::LargestDifference(Fair(scene, width, options), plain),
+        EXPECT_LT(test::LargestDifference(FairWith(scene, width, options), plain),
                   2e-15 * test::BoxDiagonal(scene.positions))
             << name;
     }
@@ -155,8 +156,8 @@ TEST(KeptFeatures, NoiseGoesAndEdgesStay) {
     auto noisy = clean;
     test::AddNoise(noisy, 0.1, 5);
     double const edge = test::MeasureEdges(clean).mean, width = 1.5 * edge;
-    auto const plain = Fair(noisy, width, {.steps = 3}),
-               kept = Fair(noisy, width, {.steps = 3, .keptFeatures = 0.2 / edge});
+    auto const plain = FairWith(noisy, width, {.steps = 3}),
+               kept = FairWith(noisy, width, {.steps = 3, .keptFeatures = 0.2 / edge});
     double const before = FindDistanceFromCube(noisy.positions);
     EXPECT_LT(FindDistanceFromCube(kept), 0.7 * before);
     EXPECT_LT(FindDistanceFromCube(kept), 0.5 * FindDistanceFromCube(plain));
@@ -218,10 +219,10 @@ CleanedCube Clean(engine::Scene const& clean, engine::Scene const& noisy,
     for (int k = 0; k < 12; ++k) {
         double const width = (low + high) / 2;
         bool const isEnough =
-            CleanedCube{clean, Fair(noisy, width, options)}.FindNormalsError() < 0.1;
+            CleanedCube{clean, FairWith(noisy, width, options)}.FindNormalsError() < 0.1;
         (isEnough ? high : low) = width;
     }
-    return {clean, Fair(noisy, high, options)};
+    return {clean, FairWith(noisy, high, options)};
 }
 
 // At equal noise in the middle of the sides: order 4 loses a small part of the volume that order 2
@@ -253,9 +254,9 @@ TEST(KeptFeatures, RotateThenFilterIsFilterThenRotate) {
     SmoothOptions const options{
         .steps = 2, .keptFeatures = 0.2 / edge, .solver = CascadeSolver::Exact};
     auto const rotated =
-        test::Transform(Fair(scene, edge, options), rotation, Eigen::Vector3d::Zero());
+        test::Transform(FairWith(scene, edge, options), rotation, Eigen::Vector3d::Zero());
     scene.positions = test::Transform(scene.positions, rotation, Eigen::Vector3d::Zero());
-    EXPECT_LT(test::LargestDifference(Fair(scene, edge, options), rotated),
+    EXPECT_LT(test::LargestDifference(FairWith(scene, edge, options), rotated),
               1e-13 * test::BoxDiagonal(scene.positions));
 }
 
@@ -287,7 +288,7 @@ TEST(Orders, WhatDoesNotGoTogetherIsRefused) {
     }
     auto const quads = test::MakeQuadSphere(1);
     EXPECT_NE(test::RefusalOf([&] {
-                  Fair(quads, 0.1, {.keptFeatures = 1.0});
+                  FairWith(quads, 0.1, {.keptFeatures = 1.0});
               }).find("face 0 has 4 corners; `keptFeatures` needs triangles"),
               std::string::npos);
 }
