@@ -22,7 +22,7 @@ using engine::Model;
 using engine::RefineOptions;
 using test::Rows;
 using test::ToRows;
-using Rule = far_ext::LimitOptions::AlphaRule;
+using AlphaRule = far_ext::LimitOptions::AlphaRule;
 
 engine::Scene Refine(engine::Scene const& scene, RefineOptions const& options) {
     engine::Job job;
@@ -36,7 +36,7 @@ Rows FirstOf(engine::Scene const& fine, engine::Scene const& base) {
 
 Rows LimitsOf(engine::Scene const& scene, double alpha) {
     auto const A = far_ext::LimitMatrix::Build(Model::Build(scene).GetRefiner(), 0,
-                                               {.alpha = alpha, .alphaRule = Rule::Stationary});
+                                               {.alpha = alpha, .alphaRule = AlphaRule::Stationary});
     return A.AsMatrix() * ToRows(scene.positions);
 }
 
