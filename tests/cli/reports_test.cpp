@@ -128,7 +128,6 @@ TEST_F(Reports, ListTheOptionsOfTheVerbsHelp) {
 TEST_F(Reports, AreWrittenOfRunsThatFail) {
     std::string const report = folder / "r.json";
     std::string const bad = folder.Write("bad.obj", "v 0 0 nonsense\n");
-    std::string const cube = Shape("catmark_cube");
     struct Failure {
         Words words;
         int status;

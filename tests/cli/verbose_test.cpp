@@ -63,7 +63,7 @@ protected:
             if (word == "MESH")
                 words.push_back(test::ScenePath("spot/spot.obj"));
             else if (word == "PLACES")
-                words.push_back(places);
+                words.push_back(_places);
             else
                 words.push_back(word.starts_with("OUT/") ? folder / word.substr(4) : word);
         }
@@ -71,8 +71,8 @@ protected:
     }
 
 private:
-    test::TemporaryFolder inputs;
-    std::string const places = inputs.Write("places.csv", "face,s,t\n0,0.5,0.5\n");
+    test::TemporaryFolder _inputs;
+    std::string const _places = _inputs.Write("places.csv", "face,s,t\n0,0.5,0.5\n");
 };
 
 /// "limn: factorising: 0.012 s"

@@ -13,8 +13,6 @@
 namespace limn {
 namespace {
 
-using engine::MeshTarget;
-
 engine::Scene MakeTorusAt(double distance) {
     engine::Scene torus = test::MakeTorus(12, 8);
     auto const noise = test::MakeNoise(torus.positions.size(), 3);

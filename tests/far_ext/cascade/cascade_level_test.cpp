@@ -382,7 +382,7 @@ TEST(CascadeLevel, VerticesComeInTheOrderOfTheSpecification) {
 
 // ---- what is no surface -------------------------------------------------------------------------
 
-std::optional<ErrorCode> CodeOfFaces(std::vector<Index> faces, int faceSize = 3) {
+std::optional<ErrorCode> CodeOfFaces(std::vector<Index> const& faces, int faceSize = 3) {
     return test::CodeOf([&] {
         CascadeMesh mesh;
         mesh.faceSize = faceSize;
