@@ -46,22 +46,24 @@ eval::LimitSurface const& Model::GetTextureSurface() const {
     return Get(_parts->texture, 0);
 }
 
+// By mutexes, not std::call_once: where memory is short, the C library ends the process rather than
+// let an exception leave a call that is made once.
+
 eval::LimitSurface const& Model::Get(LazySurface& lazy, int fvarChannel) const {
-    std::call_once(lazy.isBuilt, [&] {
+    std::lock_guard const lock(lazy.mutex);
+    if (!lazy.surface) {
         // Isolated, for a thread that waits for its own workers must not take up work of another
         // one that waits for this surface.
         tbb::this_task_arena::isolate([&] {
             lazy.surface = std::make_shared<eval::LimitSurface const>(GetRefiner(), fvarChannel);
         });
-    });
+    }
     return *lazy.surface;
 }
 
 std::string const& Model::GetSha256() const {
-    std::call_once(_points->isHashed, [this] {
-        if (_points->sha256.empty())
-            _points->sha256 = HashContent(_parts->scene, _points->positions);
-    });
+    std::lock_guard const lock(_points->mutex);
+    if (_points->sha256.empty()) _points->sha256 = HashContent(_parts->scene, _points->positions);
     return _points->sha256;
 }
 

@@ -86,8 +86,8 @@ public:
 private:
     /// What models that differ in their positions share.
     struct LazySurface {
-        std::shared_ptr<eval::LimitSurface const> surface{};
-        std::once_flag isBuilt{};
+        std::mutex mutex{};
+        std::shared_ptr<eval::LimitSurface const> surface{};  // complete elsewhere
     };
     struct Parts {
         Scene scene;  ///< all but positions and sha256, which are empty here
@@ -97,7 +97,7 @@ private:
     struct Points {
         std::vector<double> positions;
         mutable std::string sha256;  ///< where none is given: made when first asked for
-        mutable std::once_flag isHashed{};
+        mutable std::mutex mutex{};
     };
 
     Model(std::shared_ptr<Parts const> parts, std::shared_ptr<Points const> points)
