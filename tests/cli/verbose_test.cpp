@@ -125,7 +125,8 @@ TEST_F(Cli, VerboseNamesThePhaseThatFailedBeforeTheError) {
 }
 
 TEST_F(Cli, QuietAndVerboseContradictEachOther) {
-    ExpectError(Limn({"info", Shape("catmark_cube"), "--quiet", "--verbose"}), 2, "exclude each other");
+    ExpectError(Limn({"info", Shape("catmark_cube"), "--quiet", "--verbose"}), 2,
+                "exclude each other");
 }
 
 }  // namespace

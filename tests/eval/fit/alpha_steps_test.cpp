@@ -35,8 +35,8 @@ Rows FirstOf(engine::Scene const& fine, engine::Scene const& base) {
 }
 
 Rows LimitsOf(engine::Scene const& scene, double alpha) {
-    auto const A = far_ext::LimitMatrix::Build(Model::Build(scene).GetRefiner(), 0,
-                                               {.alpha = alpha, .alphaRule = AlphaRule::Stationary});
+    auto const A = far_ext::LimitMatrix::Build(
+        Model::Build(scene).GetRefiner(), 0, {.alpha = alpha, .alphaRule = AlphaRule::Stationary});
     return A.AsMatrix() * ToRows(scene.positions);
 }
 
