@@ -2,11 +2,10 @@
 //
 // Sums of bands: `limn bands --gain` and `--from`, and the same as a layer of a bake.
 
-#include <OpenImageIO/imageio.h>
-
 #include "engine/io/mesh_reader.h"
 #include "engine/io/mesh_writer.h"
 #include "support/cli.h"
+#include "support/exr_level.h"
 #include "support/fit_meshes.h"
 #include "support/values.h"
 
@@ -130,11 +129,10 @@ TEST_F(CliBands, AreALayerOfABake) {
                     "2,1", "--against", folder / "out.obj", "--vector", "--precision", "double"})
                   .status,
               0);
-    auto const input = OIIO::ImageInput::open(folder / "x.exr");
-    OIIO::ImageSpec const spec = input->spec();
-    std::vector<float> pixels(spec.image_pixels() * 6);
-    ASSERT_EQ(spec.nchannels, 6);
-    ASSERT_TRUE(input->read_image(0, 0, 0, 6, OIIO::TypeDesc::FLOAT, pixels.data()));
+    Imf::TiledInputFile input((folder / "x.exr").c_str());
+    auto const pixels = test::ReadLevel(input, 0,
+                                        {"bands.from.R", "bands.from.G", "bands.from.B",
+                                         "displacement.R", "displacement.G", "displacement.B"});
     double largest = 0.0;
     for (size_t i = 0; i < pixels.size(); i += 6) {
         for (size_t c = 0; c < 3; ++c) {
@@ -143,7 +141,6 @@ TEST_F(CliBands, AreALayerOfABake) {
         }
     }
     EXPECT_GT(largest, 0.01);
-    EXPECT_EQ(spec.channelnames.at(0), "bands.from.R");
 }
 
 TEST_F(CliBands, InABakeOptionsThatDoNotFitAreStatus2) {
