@@ -101,7 +101,7 @@ std::set<std::string> ListMade(Words const& command) {
     std::set<std::string> made;
     std::string const output = Behind(command, "-o"), picture = Behind(command, "--picture");
     if (picture.ends_with(".png")) made.insert(picture);
-    std::string const verb = command.at(1);
+    std::string const& verb = command.at(1);
     if (verb == "measure") {
         if (Has(command, "--picture")) made.insert(output + ".mean.png");
         if (Has(command, "--highlight")) made.insert(output + ".highlight.png");
