@@ -210,20 +210,20 @@ CascadeMesh MakeCascadeMesh(Far::TopologyRefiner const& refiner, int level) {
         auto const vertices = fine.GetFaceVertices(face);
         mesh.faces.insert(mesh.faces.end(), vertices.begin(), vertices.end());
     }
-    enum : char { FromVertex, FromEdge, FromFace };
+    enum : char { kFromVertex, kFromEdge, kFromFace };
     std::vector<std::pair<char, Index>> sources(mesh.numVertices);
     for (Index i = 0; i < coarse.GetNumVertices(); ++i)
-        sources[coarse.GetVertexChildVertex(i)] = {FromVertex, i};
+        sources[coarse.GetVertexChildVertex(i)] = {kFromVertex, i};
     for (Index i = 0; i < coarse.GetNumEdges(); ++i)
-        sources[coarse.GetEdgeChildVertex(i)] = {FromEdge, i};
+        sources[coarse.GetEdgeChildVertex(i)] = {kFromEdge, i};
     for (Index i = 0; mesh.faceSize == 4 && i < coarse.GetNumFaces(); ++i)
-        sources[coarse.GetFaceChildVertex(i)] = {FromFace, i};
+        sources[coarse.GetFaceChildVertex(i)] = {kFromFace, i};
     for (auto const& [kind, source] : sources) {
-        if (kind == FromVertex) {
+        if (kind == kFromVertex) {
             mesh.parents.push_back(source);
         } else {
             auto const vertices =
-                kind == FromEdge ? coarse.GetEdgeVertices(source) : coarse.GetFaceVertices(source);
+                kind == kFromEdge ? coarse.GetEdgeVertices(source) : coarse.GetFaceVertices(source);
             mesh.parents.insert(mesh.parents.end(), vertices.begin(), vertices.end());
         }
         mesh.parentOffsets.push_back(static_cast<int>(mesh.parents.size()));

@@ -111,7 +111,7 @@ SparseRows BuildButterfly(Far::TopologyRefiner const& refiner, int level) {
         throw Error(ErrorCode::Unsupported,
                     "the Butterfly rule needs triangles and the scheme loop");
     }
-    Level const coarse = refiner.GetLevel(level - 1);
+    Level const& coarse = refiner.GetLevel(level - 1);
     CheckBoundary(coarse);
     for (Index edge = 0; edge < coarse.GetNumEdges(); ++edge) {
         int const count = coarse.GetEdgeFaces(edge).size();
