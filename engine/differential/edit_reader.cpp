@@ -41,12 +41,14 @@ public:
         CurvatureEdit edit;
         for (auto const& [key, value] : json.items()) {
             if (key == "curvature") {
-                for (Json const& entry : ListOf(key, value)) {
+                RequireList(key, value);
+                for (Json const& entry : value) {
                     edit.factors.push_back({VertexOf(key, entry), NumberOf(key, entry, "factor")});
                     CheckKeys(key, entry, 2);
                 }
             } else if (key == "rotate") {
-                for (Json const& entry : ListOf(key, value)) {
+                RequireList(key, value);
+                for (Json const& entry : value) {
                     edit.rotations.push_back(
                         {VertexOf(key, entry), AxisOf(entry), NumberOf(key, entry, "degrees")});
                     CheckKeys(key, entry, 3);
@@ -88,9 +90,8 @@ private:
         throw Error(ErrorCode::BadMesh, fmt::format("{}: {}", _path, what));
     }
 
-    Json const& ListOf(std::string const& key, Json const& value) const {
+    void RequireList(std::string const& key, Json const& value) const {
         if (!value.is_array()) Refuse(fmt::format("'{}' is no list", key));
-        return value;
     }
 
     /// All keys that are needed have been found; there must be no others.
