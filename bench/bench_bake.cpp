@@ -167,6 +167,7 @@ void Measure(std::string const& name, int numRounds) {
 }  // namespace limn::bench
 
 /// bench_bake [--rounds N] [--mesh NAME]: both meshes, or one of the assets.
+// NOLINTNEXTLINE(bugprone-exception-escape): what is thrown ends a bench, as it should
 int main(int argc, char** argv) {
     int const numRounds = limn::bench::GetNumRounds(argc, argv);
     std::vector<std::string> names{"control/chess_rook.obj", "control/ict_head_skin.obj"};

@@ -86,46 +86,67 @@ check_format() {
     shellcheck -x limn check .ci/run scripts/*.sh tests/install/run.sh
 }
 
-# list_changed COMMIT: the sources that changed since; for a header, its source or one that includes
-# it stands in.
-list_changed() {
-    git diff --name-only --diff-filter=d "$1" -- '*.h' '*.cpp' | while read -r file; do
-        case $file in
-        *.h)
-            if [ -e "${file%.h}.cpp" ]; then
-                echo "${file%.h}.cpp"
-            else
-                list_sources '*.cpp' | xargs grep -lF "\"${file#tests/}\"" | head -n 1
-            fi
-            ;;
-        *) echo "$file" ;;
-        esac
-    done | sort -u
+# source_of FILE: the file itself, if it is a source; for a header, its source, or one that includes it,
+# be it by way of other headers.
+source_of() {
+    file=$1
+    while [ "${file##*.}" = h ]; do
+        if [ -e "${file%.h}.cpp" ]; then
+            file=${file%.h}.cpp
+        else
+            name=${file#tests/} name=${name#bench/}
+            file=$(list_sources '*.cpp' '*.h' |
+                xargs grep -lF -e "\"$name\"" -e "<limn/$name>" | head -n 1)
+        fi
+    done
+    if [ -z "$file" ]; then say "nothing includes $1"; fi
+    echo "$file"
 }
 
-# tidy SECONDS SOURCE...: clang-tidy, for no longer than that. It reads how sources are compiled from
-# the folder of the clang build, where nothing needs to be built for that.
+# list_changed COMMIT: the sources that changed since, and those that stand in for headers.
+list_changed() {
+    git diff --name-only --diff-filter=d "$1" -- '*.h' '*.cpp' |
+        while read -r changed; do source_of "$changed"; done | sort -u
+}
+
+# configure_again [CMAKE-ARGUMENT...]: lists of sources and compile commands are those of now.
+configure_again() {
+    configure "$@"
+    ninja -C "$build" build.ninja >"$build/build.log" 2>&1 || die "cmake failed" "$build/build.log" 30
+}
+
+# tidy SECONDS SOURCE...: clang-tidy, for no longer than that; 0 is for as long as it takes. It reads
+# how sources are compiled from the folder of the clang build, where nothing needs to be built for that.
 tidy() {
     seconds=$1
     shift
-    if [ $# -eq 0 ]; then return 0; fi
-    in_folder clang tools configure -DLIMN_DEVELOPER=ON -DCMAKE_CXX_COMPILER=clang++-19
     say "clang-tidy on $# sources"
+    if [ $# -eq 0 ]; then return 0; fi
+    in_folder clang tools configure_again -DLIMN_DEVELOPER=ON -DCMAKE_CXX_COMPILER=clang++-19
     log=build/clang/tidy.log
     status=0
-    timeout "$seconds" run-clang-tidy-19 -quiet -j "$(nproc)" -p build/clang "$@" >"$log" 2>&1 ||
-        status=$?
+    # Without a buffer, which would be lost with what was found when the time is over.
+    PYTHONUNBUFFERED=1 timeout "$seconds" \
+        run-clang-tidy-19 -quiet -j "$(nproc)" -p build/clang "$@" >"$log" 2>&1 || status=$?
+    seen=$(grep -c '^\[ *[0-9]*/' "$log" || true)
+    if [ $status -eq 124 ]; then
+        say "stopped after $seconds seconds, with $(($# - seen)) of $# sources not looked at"
+    fi
     if grep -E -A3 ' (warning|error): ' "$log" >&2; then die "clang-tidy found something" "$log" 0; fi
     case $status in
-    0) ;;
-    124) say "clang-tidy has run for $seconds seconds; the rest is not looked at" ;;
+    0) if [ "$seen" -lt $# ]; then die "CMake compiles only $seen of $# sources" "$log" 0; fi ;;
+    124) ;;
     *) die "clang-tidy failed" "$log" ;;
     esac
 }
 
 # Names of sources hold no spaces.
 # shellcheck disable=SC2046
-check_tidy() { tidy 7200 $(list_sources '*.cpp'); }
+check_tidy() { tidy 0 $(list_sources '*.cpp'); }
 
 # shellcheck disable=SC2046,SC2154 # ./check has read $tidy_since
-check_tidy_since() { tidy 600 $(list_changed "$tidy_since"); }
+check_tidy_since() {
+    git rev-parse --verify "$tidy_since^{commit}" >/dev/null ||
+        die "--tidy-since needs a commit, not '$tidy_since'"
+    tidy 600 $(list_changed "$tidy_since")
+}

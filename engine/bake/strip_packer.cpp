@@ -86,15 +86,15 @@ void PadStrip(std::span<std::shared_ptr<Strip> const> window, Strip& strip, int 
     auto const isPadded = FindPaddedPlanes(files, strip.numPlanes);
     Padder const padder(window, strip, padding, isPadded);
     if (!padder.HasWork()) return;
-    constexpr int tileSize = ExrSpec::kTileSize;
+    constexpr int kTileSize = ExrSpec::kTileSize;
     int const width = strip.texels.width;
-    tbb::parallel_for(tbb::blocked_range<int>(0, (width + tileSize - 1) / tileSize),
+    tbb::parallel_for(tbb::blocked_range<int>(0, (width + kTileSize - 1) / kTileSize),
                       [&](auto const& tiles) {
                           job.CheckStopped();
                           PaddingSearch search(padder.GetCoverage(), padding);
                           for (int tile = tiles.begin(); tile != tiles.end(); ++tile) {
-                              padder.PadTile(search, tile * tileSize,
-                                             std::min(tileSize, width - tile * tileSize));
+                              padder.PadTile(search, tile * kTileSize,
+                                             std::min(kTileSize, width - tile * kTileSize));
                           }
                       });
 }

@@ -108,8 +108,8 @@ public:
         Picture picture(_size, _size);
         for (size_t pixel = 0; pixel < NumPixels(); ++pixel) {
             if (!(_coverage[pixel] > 0.0f)) continue;
-            float const grey = std::clamp(_values[pixel], 0.0f, 1.0f);
-            picture.SetGrey(pixel, static_cast<uint8_t>(255.0f * grey + 0.5f));
+            float const grey = _values[pixel];
+            picture.SetGrey(pixel, ToBytes({grey, grey, grey})[0]);
         }
         return picture;
     }

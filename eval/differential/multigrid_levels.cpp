@@ -81,7 +81,7 @@ std::vector<MultigridLevel> BuildMultigridLevels(Far::TopologyRefiner const& ref
     std::vector<MultigridLevel> graphs;
     far_ext::LargeArray<Index> coarseRows;
     for (int k = coarsest; k <= refiner.GetMaxLevel(); ++k) {
-        Level const level = refiner.GetLevel(k);
+        Level const& level = refiner.GetLevel(k);
         auto order = OrderAlongEdges(level, fixed);
         auto rows = far_ext::InvertOrder(order.rows);
         MultigridLevel& graph = graphs.emplace_back();

@@ -128,8 +128,9 @@ double IntegrateRing(FaceTree& tree, DiscSector const& sector) {
             SurfaceDerivatives const d = EvaluateDerivatives(tree, sector.domain, s, t);
             Eigen::Vector3d const N = d.ds.cross(d.dt);
             double const M = N.dot(d.dst), square = N.squaredNorm();
-            double const KdA = (N.dot(d.dss) * N.dot(d.dtt) - M * M) / (square * std::sqrt(square));
-            return GetDiscWeight(isLoop, a, b, sector.radius) * KdA * width * h * h;
+            double const curvatureArea =
+                (N.dot(d.dss) * N.dot(d.dtt) - M * M) / (square * std::sqrt(square));
+            return GetDiscWeight(isLoop, a, b, sector.radius) * curvatureArea * width * h * h;
         };
         sum += IntegrateSquare(integrand, 0.0, 0.0, 1.0, 0.0, kMaxHalvings);
     }

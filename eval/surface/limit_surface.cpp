@@ -62,7 +62,7 @@ LimitSurface::LimitSurface(Far::TopologyRefiner const& refiner, int fvarChannel)
 }
 
 std::optional<LimitSurface::Excess> LimitSurface::FindExcess(Far::TopologyRefiner const& refiner) {
-    Level const level = refiner.GetLevel(0);
+    Level const& level = refiner.GetLevel(0);
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
         int const valence = level.GetVertexFaces(vertex).size();
         if (valence > kMaxValence) return Excess{false, vertex, valence};

@@ -254,23 +254,23 @@ inline void PutLane(Lanes<Real> const& v, Real orientation, Real scale, float* o
 
 template <Quantity Q, bool IsTriangle, class Real>
 void EvaluateAs(SurfaceBatch<Real> const& batch) {
-    constexpr int Order = Q == Quantity::Position ? 0 : Q == Quantity::Normal ? 1 : 2;
+    constexpr int kOrder = Q == Quantity::Position ? 0 : Q == Quantity::Normal ? 1 : 2;
     Lanes<Real> v;
     size_t const stride = batch.stride;
     Real const orientation = batch.orientation, scale = batch.scale;
     for (int i = 0; i < batch.count; i += W) {
         if constexpr (IsTriangle) {
-            EvaluateTriangles<Order>(batch.coefficients, batch.x + i, batch.y + i, v.p, v.ps, v.pt,
-                                     v.pss, v.pst, v.ptt);
+            EvaluateTriangles<kOrder>(batch.coefficients, batch.x + i, batch.y + i, v.p, v.ps, v.pt,
+                                      v.pss, v.pst, v.ptt);
         } else {
-            EvaluateQuads<Order>(batch.coefficients, batch.x + i, batch.y + i, v.p, v.ps, v.pt,
-                                 v.pss, v.pst, v.ptt);
+            EvaluateQuads<kOrder>(batch.coefficients, batch.x + i, batch.y + i, v.p, v.ps, v.pt,
+                                  v.pss, v.pst, v.ptt);
         }
         float* const out = batch.out + i;
         for (int d = 0; d < 3; ++d) {
             for (int l = 0; l < W; ++l) out[d * stride + l] = static_cast<float>(v.p[d][l]);
         }
-        if constexpr (Order > 0) {
+        if constexpr (kOrder > 0) {
             unsigned* const degenerate = batch.degenerate + i;
             LIMN_INDEPENDENT_LANES
             for (int l = 0; l < W; ++l) {

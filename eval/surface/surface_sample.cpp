@@ -53,20 +53,20 @@ Curvature ComputeCurvature(Eigen::Vector3d const& ds, Eigen::Vector3d const& dt,
     Eigen::Vector3d const a1 = ds / p, a2 = n.cross(a1);
     double const q = dt.dot(a1), r = dt.dot(a2);
     double const sign = GetSign(orientation);
-    double const W11 = sign * e / (p * p);
-    double const W12 = sign * (f - e * q / p) / (p * r);
-    double const W22 = sign * (g - 2.0 * f * q / p + e * q * q / (p * p)) / (r * r);
+    double const w11 = sign * e / (p * p);
+    double const w12 = sign * (f - e * q / p) / (p * r);
+    double const w22 = sign * (g - 2.0 * f * q / p + e * q * q / (p * p)) / (r * r);
 
     Curvature curvature;
-    double const half = 0.5 * (W11 - W22), D = std::sqrt(half * half + W12 * W12);
-    curvature.mean = 0.5 * (W11 + W22);
-    curvature.gaussian = W11 * W22 - W12 * W12;
+    double const half = 0.5 * (w11 - w22), D = std::sqrt(half * half + w12 * w12);
+    curvature.mean = 0.5 * (w11 + w22);
+    curvature.gaussian = w11 * w22 - w12 * w12;
     curvature.k1 = curvature.mean + D;
     curvature.k2 = curvature.mean - D;
     curvature.direction = a1;
-    if (D > 1e-5 * std::max(std::abs(W11), std::abs(W22))) {
+    if (D > 1e-5 * std::max(std::abs(w11), std::abs(w22))) {
         // Half of the angle with cosine c and sine s, by its larger part first; no libm.
-        double const c = half / D, s = W12 / D;
+        double const c = half / D, s = w12 / D;
         double const large = std::sqrt(0.5 * (1.0 + std::abs(c))),
                      small = 0.5 * std::abs(s) / large;
         double const along = c >= 0.0 ? large : small, across = c >= 0.0 ? small : large;

@@ -14,7 +14,7 @@ namespace {
 
 /// Follows the face's corners and edges down to the last level.
 void SortByBoundary(Far::TopologyRefiner const& refiner, int depth, FaceLattice& lattice) {
-    Level const base = refiner.GetLevel(0);
+    Level const& base = refiner.GetLevel(0);
     std::vector<char> isInside(lattice.places.size(), 1);
     auto const descend = [&](int level, Index vertex) {
         for (; level < depth; ++level)
@@ -66,7 +66,7 @@ FaceLattice LatticeCache::Build(int size, int depth) {
     refiner->RefineUniform(Far::TopologyRefiner::UniformOptions(depth));
 
     FaceLattice lattice;
-    Level const fine = refiner->GetLevel(depth);
+    Level const& fine = refiner->GetLevel(depth);
     lattice.places.assign(fine.GetNumVertices(), {-1, -1});
     for (Index f = 0; f < fine.GetNumFaces(); ++f) {
         auto const vertices = fine.GetFaceVertices(f);
@@ -81,7 +81,7 @@ FaceLattice LatticeCache::Build(int size, int depth) {
 
 void LatticeCache::AddChildren(Far::TopologyRefiner const& refiner, int depth,
                                FaceLattice& lattice) {
-    Level const fine = refiner.GetLevel(depth);
+    Level const& fine = refiner.GetLevel(depth);
     auto const children = refiner.GetLevel(0).GetFaceChildFaces(0);
     int const perChild = fine.GetNumFaces() / children.size();
     for (int c = 0; c < children.size(); ++c) {

@@ -47,7 +47,7 @@ void RoundToPortableWeights(WeightRow& row) {
 std::vector<WeightRow> RefineIdentity(FaceRing const& ring, Far::TopologyRefiner const& refiner,
                                       bool isVarying) {
     Far::PrimvarRefinerReal<double> const primvars(refiner);
-    Level const fine = refiner.GetLevel(1);
+    Level const& fine = refiner.GetLevel(1);
     auto const coarseRows = WeightRow::Identity(ring.numPoints);
     std::vector<WeightRow> rows;
     if (ring.IsFaceVarying()) {

@@ -101,7 +101,7 @@ std::set<std::string> ListMade(Words const& command) {
     std::set<std::string> made;
     std::string const output = Behind(command, "-o"), picture = Behind(command, "--picture");
     if (picture.ends_with(".png")) made.insert(picture);
-    std::string const verb = command.at(1);
+    std::string const& verb = command.at(1);
     if (verb == "measure") {
         std::string const map = picture == "gaussian" ? picture : "mean";
         if (Has(command, "--picture")) made.insert(fmt::format("{}.{}.png", output, map));

@@ -34,9 +34,10 @@ bool Succeeds(Work const& work) {
         return true;
     } catch (Error const& error) {
         Require(error.what()[0] != '\0', "an error has a message");
+        return false;
     } catch (engine::Stopped const&) {
+        return false;
     }
-    return false;
 }
 
 /// Runs `work`, which must not refuse.

@@ -33,6 +33,7 @@ std::vector<fs::path> ListInputs(int count, char const* const* names) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(bugprone-exception-escape): what is thrown ends a replay, as it should
 int main(int argc, char** argv) {
     std::vector<fs::path> const inputs = ListInputs(argc - 1, argv + 1);
     for (fs::path const& path : inputs) {

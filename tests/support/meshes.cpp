@@ -51,7 +51,7 @@ engine::Scene LoadShape(std::string const& name) {
 }
 
 std::string AssetPath(std::string const& path) {
-    std::string const own = DataPath("assets/" + path);
+    std::string own = DataPath("assets/" + path);
 #ifdef LIMN_ASSETS
     if (!fs::exists(own)) return std::string(LIMN_ASSETS) + "/" + path;
 #endif

@@ -19,7 +19,7 @@ CLI::Option* AddWordOption(CLI::App& verb, std::string const& flag, Target& targ
     auto const parse = [&target, &words, flag](std::string const& word) {
         auto const value = words.Find(word);
         if (!value) RefuseChoice(flag, word, words.List());
-        target = *value;
+        target = Value{*value};
     };
     auto* const option = verb.add_option_function<std::string>(flag, parse, help);
     for (auto const& row : words.rows) {
