@@ -265,6 +265,38 @@ int RunRefine(RefineArguments const& a, CLI::App const& verb, Context& context) 
     return isDone ? kDone : kNotReached;
 }
 
+void AddDifferentialOptions(CLI::App& verb, RefineArguments& a) {
+    auto const differential = [](CLI::Option* option) {
+        return option->group("Options of --space differential");
+    };
+    differential(AddWordOption(verb, "--laplacian", a.options.laplacian, kLaplacianWords,
+                               "combinatorial (default), cotangent or mesh"));
+    differential(AddNumberOption(verb, "--dirmag", a.options.dirMagLevels,
+                                 "first levels done by direction and magnitude (default 0)",
+                                 {0, 10}));
+    differential(AddNumberOption(verb, "--spatial-first", a.options.spatialLevels,
+                                 "levels done in space before (default 0)", {0, 10}));
+    differential(
+        AddNumberOption(verb, "--handle", a.options.handles,
+                        "vertex that stays: one per component or boundary loop (repeatable)"));
+    differential(AddWordOption(verb, "--solver", a.options.solver, kDifferentialSolverWords,
+                               "multigrid (default) or cholesky"));
+    differential(verb.add_option(
+        "--edit", a.editPath,
+        "JSON, all keys optional, vertices 0-based: {\"set_curvature\": [{\"vertex\": 3, "
+        "\"mean\": 0.2}], \"curvature\": [{\"vertex\": 4, \"factor\": 1.5}], \"set_normal\": "
+        "[{\"vertex\": 5, \"normal\": [0,1,1]}], \"rotate\": [{\"vertex\": 7, \"axis\": [0,0,1], "
+        "\"degrees\": 20}], \"filter\": \"polarise\" or {\"points\": [[0,0], [0.5,0.2], [1,1]]}}; "
+        "applied in this order"));
+    differential(AddNumberOption(
+        verb, "--tolerance", a.tolerance,
+        "of what remains of the differential coordinates, over their length (default "
+        "1e-8, with --precision double 1e-12; with --laplacian cotangent or mesh 0.01)",
+        {1e-15, 1.0}));
+    differential(verb.add_flag("--keep-result", a.keepsResult,
+                               "write what a solver that missed its tolerance has"));
+}
+
 }  // namespace
 
 Verb AddRefine(CLI::App& app) {
@@ -296,35 +328,7 @@ Verb AddRefine(CLI::App& app) {
     verb->add_flag("--curve", a->isCurve,
                    "MESH holds polylines (OBJ 'l'); their rule is cubic B-spline, or four-point "
                    "where --rule keeps vertices");
-    auto const differential = [](CLI::Option* option) {
-        return option->group("Options of --space differential");
-    };
-    differential(AddWordOption(*verb, "--laplacian", a->options.laplacian, kLaplacianWords,
-                               "combinatorial (default), cotangent or mesh"));
-    differential(AddNumberOption(*verb, "--dirmag", a->options.dirMagLevels,
-                                 "first levels done by direction and magnitude (default 0)",
-                                 {0, 10}));
-    differential(AddNumberOption(*verb, "--spatial-first", a->options.spatialLevels,
-                                 "levels done in space before (default 0)", {0, 10}));
-    differential(
-        AddNumberOption(*verb, "--handle", a->options.handles,
-                        "vertex that stays: one per component or boundary loop (repeatable)"));
-    differential(AddWordOption(*verb, "--solver", a->options.solver, kDifferentialSolverWords,
-                               "multigrid (default) or cholesky"));
-    differential(verb->add_option(
-        "--edit", a->editPath,
-        "JSON, all keys optional, vertices 0-based: {\"set_curvature\": [{\"vertex\": 3, "
-        "\"mean\": 0.2}], \"curvature\": [{\"vertex\": 4, \"factor\": 1.5}], \"set_normal\": "
-        "[{\"vertex\": 5, \"normal\": [0,1,1]}], \"rotate\": [{\"vertex\": 7, \"axis\": [0,0,1], "
-        "\"degrees\": 20}], \"filter\": \"polarise\" or {\"points\": [[0,0], [0.5,0.2], [1,1]]}}; "
-        "applied in this order"));
-    differential(AddNumberOption(
-        *verb, "--tolerance", a->tolerance,
-        "of what remains of the differential coordinates, over their length (default "
-        "1e-8, with --precision double 1e-12; with --laplacian cotangent or mesh 0.01)",
-        {1e-15, 1.0}));
-    differential(verb->add_flag("--keep-result", a->keepsResult,
-                                "write what a solver that missed its tolerance has"));
+    AddDifferentialOptions(*verb, *a);
     verb->footer(
         "Example:\n  limn refine scenes/spot/spot.obj -o out/spot.2.obj --levels 2 --space "
         "differential");

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/images/exr_lookup.h"
-#include "support/cli.h"
+#include "support/program/cli.h"
 
 namespace limn {
 namespace {

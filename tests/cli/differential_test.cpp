@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "engine/io/mesh_reader.h"
-#include "support/cli.h"
 #include "support/pictures.h"
+#include "support/program/cli.h"
 #include "support/values.h"
 
 namespace limn {

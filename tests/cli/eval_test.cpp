@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "support/cli.h"
+#include "support/program/cli.h"
 
 namespace limn {
 namespace {

@@ -17,8 +17,8 @@
 #include "engine/io/mesh_writer.h"
 #include "engine/scene/extent.h"
 #include "engine/scene/refine.h"
-#include "support/cli.h"
 #include "support/fit_meshes.h"
+#include "support/program/cli.h"
 #include "support/values.h"
 
 namespace limn {

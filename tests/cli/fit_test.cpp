@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "engine/io/mesh_reader.h"
-#include "support/cli.h"
+#include "support/program/cli.h"
 #include "support/values.h"
 
 namespace limn {

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "engine/io/mesh_reader.h"
-#include "support/cli.h"
+#include "support/program/cli.h"
 #include "support/source_tree.h"
 #include "support/values.h"
 

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/io/mesh_reader.h"
-#include "support/cli.h"
+#include "support/program/cli.h"
 
 namespace limn {
 namespace {

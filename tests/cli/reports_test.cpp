@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/io/file.h"
-#include "support/cli.h"
+#include "support/program/cli.h"
 #include "support/source_tree.h"
 
 namespace limn {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/cli.h"
+#include "support/program/cli.h"
 
 namespace limn {
 namespace {

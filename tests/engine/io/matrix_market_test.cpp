@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/program.h"
+#include "support/program/program.h"
 
 namespace limn {
 namespace {

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// limn smooth --adaptive, --order and --keep-features from outside.
+
+#include <filesystem>
+#include <tuple>
+
+#include "support/adaptive_meshes.h"
+#include "support/program/cli_smooth.h"
+#include "support/values.h"
+
+namespace limn {
+namespace {
+
+using namespace test::cli;
+
+TEST_F(CliSmooth, AdaptiveRunsAreReported) {
+    std::string const frame = test::ScenePath("window_frame/window_frame.obj");
+    auto const found = Smooth(frame, {"--adaptive", "4e-3", "--width", "0.1"});
+    for (auto const& [edge, count] : test::CountFacesAtEdges(found.cage.faceVertices))
+        EXPECT_EQ(count, 2);
+    json const report = Report(), adaptive = report["adaptive"];
+    EXPECT_EQ(adaptive["asked"], 4e-3);
+    EXPECT_LE(adaptive["estimated"], 1.2 * 4e-3);
+    EXPECT_EQ(adaptive["vertices"], found.cage.numVertices);
+    EXPECT_EQ(adaptive["passes"], report["levels"].back()["level"]);
+    EXPECT_GT(adaptive["uniform_vertices"], 2 * found.cage.numVertices);
+    EXPECT_GT(adaptive["smallest_edge"], 0.0);
+    EXPECT_GT(adaptive["settle_moves"].size(), 0u);
+    EXPECT_FALSE(report.contains("settle_moves"));
+}
+
+TEST_F(CliSmooth, AdaptiveRunsHaveTheSameBytesForAnyNumberOfThreads) {
+    for (std::string const threads : {"1", "2", "4"}) {
+        ASSERT_EQ(Limn({"smooth", icosa, "-o", folder / (threads + ".ply"), "--adaptive", "1e-3",
+                        "--width-factor", "0.2", "--threads", threads})
+                      .status,
+                  0);
+    }
+    EXPECT_EQ(test::ReadText(folder / "1.ply"), test::ReadText(folder / "2.ply"));
+    EXPECT_EQ(test::ReadText(folder / "1.ply"), test::ReadText(folder / "4.ply"));
+}
+
+TEST_F(CliSmooth, ADepthThatIsNotEnoughIsASuccessWithAWarning) {
+    auto const outcome = Limn({"smooth", icosa, "-o", folder / "x.ply", "--adaptive", "1e-4",
+                               "--levels", "1", "--width-factor", "0.2"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(Contains(outcome.err, "more --levels")) << outcome.err;
+}
+
+// 20 % of 1 / mean edge is the number itself; three steps are the default.
+TEST_F(CliSmooth, FeaturesAreKeptByALengthOrAShare) {
+    Words const words{"--levels", "0", "--width-factor", "0.2"};
+    auto const byShare = Smooth(icosa, words + Words{"--keep-features", "20%"}),
+               byLength = Smooth(icosa, words + Words{"--keep-features", "0.1", "--steps", "3"});
+    EXPECT_EQ(Report()["levels"].size(), 3u);
+    EXPECT_LT(test::LargestDifference(byShare.positions, byLength.positions), 1e-7);
+}
+
+TEST_F(CliSmooth, WhatDoesNotGoTogetherIsNamed) {
+    std::string const cube = WriteCube();
+    for (auto const& [words, status, message] :
+         {std::tuple<Words, int, std::string>{{"--order", "4"}, 2, "--order 4 needs --levels 0"},
+          {{"--order", "3", "--levels", "0"}, 2, "--order: 3 is neither 2 nor 4"},
+          {{"--order", "4", "--levels", "0", "--boundary-rule", "natural"},
+           2,
+           "--order 4 does not go with --boundary-rule natural"},
+          {{"--order", "4", "--levels", "0", "--solver", "jacobi"}, 2, "--solver jacobi"},
+          {{"--order", "4", "--levels", "0", "--keep-features", "1"},
+           2,
+           "--order 4 and --keep-features exclude"},
+          {{"--keep-features", "10%"}, 2, "--keep-features needs --levels 0"},
+          {{"--keep-features", "-1", "--levels", "0"}, 2, "--keep-features"},
+          {{"--keep-features", "%", "--levels", "0"}, 2, "--keep-features"},
+          {{"--keep-features", "nan", "--levels", "0"}, 2, "--keep-features"},
+          {{"--keep-features", "1", "--levels", "0"}, 3, "--keep-features needs triangles"},
+          {{"--keep-features", "1", "--levels", "0", "--graph"}, 2, "--graph"},
+          {{"--adaptive", "0"}, 2, "--adaptive"},
+          {{"--adaptive", "nan"}, 2, "--adaptive"},
+          {{"--adaptive", "1e-3", "--refinement", "quadrisect"},
+           2,
+           "--refinement quadrisect and --adaptive exclude"},
+          {{"--adaptive", "1e-3", "--levels", "0"}, 2, "--levels: 0 is not from 1 to 10"},
+          {{"--adaptive", "1e-3", "--levels", "11"}, 2, "--levels: 11"},
+          {{"--adaptive", "1e-3", "--steps", "2"}, 2, "--adaptive and --steps exclude"},
+          {{"--adaptive", "1e-3", "--settle", "1e-3"}, 2, "--adaptive and --settle exclude"},
+          {{"--adaptive", "1e-3", "--sweeps", "3"}, 2, "--adaptive and --sweeps exclude"},
+          {{"--adaptive", "1e-3", "--solver", "jacobi"}, 2, "--solver jacobi"},
+          {{"--adaptive", "1e-3"}, 3, "4 corners"}}) {
+        ExpectError(Limn(Words{"smooth", cube, "-o", folder / "x.obj"} + words), status, message);
+        EXPECT_FALSE(std::filesystem::exists(folder / "x.obj"));
+    }
+}
+
+}  // namespace
+}  // namespace limn
