@@ -128,8 +128,9 @@ private:
         throw Error(ErrorCode::BadMesh, fmt::format("{}: {}", _path, what));
     }
 
-    void RequireList(std::string const& key, Json const& value) const {
+    Json const& ListOf(std::string const& key, Json const& value) const {
         if (!value.is_array()) Refuse(fmt::format("'{}' is no list", key));
+        return value;
     }
 
     /// All keys that are needed have been found; there must be no others.
