@@ -47,7 +47,8 @@ private:
     void ReadKey(std::string const& key, Json const& value, CurvatureEdit& edit) const {
         if (key == "filter") return ReadFilter(value, edit);
         auto const forEach = [&](size_t numKeys, auto add) {
-            for (Json const& entry : ListOf(key, value)) {
+            RequireList(key, value);
+            for (Json const& entry : value) {
                 add(VertexOf(key, entry), entry);
                 CheckKeys(key, entry, numKeys);
             }
@@ -88,8 +89,10 @@ private:
                             "...]}}",
                             Show(value)));
         }
+        Json const& points = value["points"];
+        RequireList("points", points);
         double last = -1.0;
-        for (Json const& point : ListOf("points", value["points"])) {
+        for (Json const& point : points) {
             bool const isPoint = point.is_array() && point.size() == 2 && point[0].is_number() &&
                                  point[1].is_number();
             if (!isPoint) Refuse(fmt::format("filter: {} is no point [x, y]", Show(point)));

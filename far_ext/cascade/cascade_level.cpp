@@ -167,30 +167,30 @@ int FindFaceSize(Far::TopologyLevel const& level) {
 }
 
 /// Where a vertex comes from: a vertex, an edge or a face of the coarser level.
-enum ParentKind : char { FromVertex, FromEdge, FromFace };
+enum class ParentKind : char { Vertex, Edge, Face };
 
 std::vector<std::pair<ParentKind, Index>> FindSources(Far::TopologyRefiner const& refiner,
                                                       int level) {
     auto const coarse = refiner.GetLevel(level - 1), fine = refiner.GetLevel(level);
     std::vector<std::pair<ParentKind, Index>> sources(fine.GetNumVertices());
     for (Index i = 0; i < coarse.GetNumVertices(); ++i)
-        sources[coarse.GetVertexChildVertex(i)] = {FromVertex, i};
+        sources[coarse.GetVertexChildVertex(i)] = {ParentKind::Vertex, i};
     for (Index i = 0; i < coarse.GetNumEdges(); ++i)
-        sources[coarse.GetEdgeChildVertex(i)] = {FromEdge, i};
+        sources[coarse.GetEdgeChildVertex(i)] = {ParentKind::Edge, i};
     bool const areQuads = refiner.GetSchemeType() != Sdc::SCHEME_LOOP;
     for (Index i = 0; areQuads && i < coarse.GetNumFaces(); ++i)
-        sources[coarse.GetFaceChildVertex(i)] = {FromFace, i};
+        sources[coarse.GetFaceChildVertex(i)] = {ParentKind::Face, i};
     return sources;
 }
 
 void AddParents(Far::TopologyRefiner const& refiner, int level, CascadeMesh& mesh) {
     auto const coarse = refiner.GetLevel(level - 1);
     for (auto const& [kind, source] : FindSources(refiner, level)) {
-        if (kind == FromVertex) {
+        if (kind == ParentKind::Vertex) {
             mesh.parents.push_back(source);
         } else {
-            auto const vertices =
-                kind == FromEdge ? coarse.GetEdgeVertices(source) : coarse.GetFaceVertices(source);
+            auto const vertices = kind == ParentKind::Edge ? coarse.GetEdgeVertices(source)
+                                                           : coarse.GetFaceVertices(source);
             mesh.parents.insert(mesh.parents.end(), vertices.begin(), vertices.end());
         }
         mesh.parentOffsets.push_back(static_cast<int>(mesh.parents.size()));

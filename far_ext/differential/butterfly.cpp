@@ -130,7 +130,7 @@ SparseRows BuildRows(Far::TopologyRefiner const& refiner, int level, double tens
         throw Error(ErrorCode::Unsupported,
                     "the Butterfly rule needs triangles and the scheme loop");
     }
-    Level const coarse = refiner.GetLevel(level - 1);
+    Level const& coarse = refiner.GetLevel(level - 1);
     RequireSimpleEdges(coarse, "Butterfly");
     return ButterflyRows(coarse, tension, atIrregular).Build();
 }

@@ -47,7 +47,7 @@ private:
 
 SparseRows DeduceInterpolatingRows(Far::TopologyRefiner const& refiner, int level,
                                    SparseRows const& approximating) {
-    Level const coarse = refiner.GetLevel(level - 1);
+    Level const& coarse = refiner.GetLevel(level - 1);
     InterpolatingRows rows(coarse, approximating);
     // OpenSubdiv's order: children of vertices, of faces where the scheme has them, of edges.
     for (Index vertex = 0; vertex < coarse.GetNumVertices(); ++vertex) rows.AddVertex(vertex);

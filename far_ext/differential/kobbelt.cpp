@@ -142,7 +142,7 @@ void RequireQuads(Level const& level) {
 SparseRows BuildKobbelt(Far::TopologyRefiner const& refiner, int level, double tension) {
     if (refiner.GetSchemeType() != Sdc::SCHEME_CATMARK)
         throw Error(ErrorCode::Unsupported, "Kobbelt's rule needs quads and the scheme catmark");
-    Level const coarse = refiner.GetLevel(level - 1);
+    Level const& coarse = refiner.GetLevel(level - 1);
     RequireQuads(coarse);
     RequireSimpleEdges(coarse, "Kobbelt's rule");
     RequireManifoldVertices(coarse);

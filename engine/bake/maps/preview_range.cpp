@@ -19,8 +19,8 @@ constexpr char const *kPercentiles = "p1", *kFull = "full", *kAsinh = "asinh";
 
 std::optional<double> ParseNumber(std::string_view text) {
     double value = 0.0;
-    char const* const end = text.data() + text.size();
-    auto const [stop, code] = std::from_chars(text.data(), end, value);
+    char const *const begin = text.data(), *const end = begin + text.size();
+    auto const [stop, code] = std::from_chars(begin, end, value);
     if (code == std::errc::result_out_of_range && stop == end) {
         throw Error(ErrorCode::BadOption,
                     fmt::format("`previewRange`: '{}' is {}", text, DescribeUnheld(text)));

@@ -28,8 +28,8 @@ template <class Number>
 ReadNumber<Number> Read(std::string_view text) {
     if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
     ReadNumber<Number> read;
-    char const* const end = text.data() + text.size();
-    auto const [stop, code] = std::from_chars(text.data(), end, read.value);
+    char const *const begin = text.data(), *const end = begin + text.size();
+    auto const [stop, code] = std::from_chars(begin, end, read.value);
     read.code = stop == end ? code : std::errc::invalid_argument;
     return read;
 }

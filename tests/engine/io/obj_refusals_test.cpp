@@ -10,7 +10,6 @@
 namespace limn {
 namespace {
 
-using engine::Scene;
 using test::kObjQuad;
 using test::kObjQuadVertices;
 using test::Refusal;

@@ -10,7 +10,6 @@
 namespace limn {
 namespace {
 
-using engine::Scene;
 using test::kPlyTriangle;
 using test::Refusal;
 using test::RefusalOfPly;

@@ -14,7 +14,6 @@ namespace {
 
 using far_ext::BuildFarLimitStencils;
 using far_ext::EndCap;
-using far_ext::FarLimitOptions;
 using far_ext::PtexPlace;
 
 std::vector<PtexPlace> ListPlaces(Index numPtexFaces, double s, double t) {
