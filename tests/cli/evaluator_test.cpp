@@ -25,11 +25,12 @@ std::vector<double> ReadVertices(std::string const& path) {
     return values;
 }
 
-/// A verb that applies A, and the file of it to look at.
+/// A verb that applies tables, and the file of it to look at.
 struct FilterRun {
     char const* name;
     Words words;
     std::string output;
+    Words tables{"A"};
 };
 
 void PrintTo(FilterRun const& run, std::ostream* stream) {
@@ -45,7 +46,11 @@ INSTANTIATE_TEST_SUITE_P(
         FilterRun{"Gains", {"bands", "MESH", "--count", "3", "--gain", "1,2,1"}, "a.gain.obj"},
         FilterRun{"Denoise", {"denoise", "MESH", "--steps", "3"}, "a.obj"},
         FilterRun{"Sharpen", {"sharpen", "MESH"}, "a.obj"},
-        FilterRun{"Morph", {"morph", "MESH", "OTHER", "--steps", "4"}, "a.0004.obj"}),
+        FilterRun{"Morph", {"morph", "MESH", "OTHER", "--steps", "4"}, "a.0004.obj"},
+        FilterRun{"Smooth",
+                  {"smooth", "MESH", "--solver", "jacobi", "--iterations", "20"},
+                  "a.obj",
+                  {"prolongation", "sweep", "load"}}),
     [](auto const& instance) { return std::string(instance.param.name); });
 
 TEST_P(Evaluator, IsNearTheDoublesAndCountsItsApplications) {
@@ -91,10 +96,13 @@ TEST_P(Evaluator, IsNearTheDoublesAndCountsItsApplications) {
         for (size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], ofCpu[i], 1e-5);
         json const report = Report()["evaluator"];
         EXPECT_EQ(report["name"], kind);
-        ASSERT_EQ(report["tables"].size(), 1u);
-        EXPECT_EQ(report["tables"][0]["what"], "A");
-        EXPECT_EQ(report["tables"][0]["rows"], expected.size() / 3);
-        EXPECT_GE(report["tables"][0]["applications"], 3);
+        Words tables;
+        for (json const& table : report["tables"]) {
+            tables.push_back(table["what"]);
+            EXPECT_GE(table["rows"], expected.size() / 3);
+            EXPECT_GE(table["applications"], 1);
+        }
+        EXPECT_EQ(tables, GetParam().tables);
     }
 }
 
