@@ -41,6 +41,7 @@ constexpr OptionName kOptionNames[] = {
     {"loops", "--loop"},
     {"maps", "--maps"},
     {"maxLength", "--max-length"},
+    {"method", "--method"},
     {"noiseRamp", "--noise-ramp"},
     {"octaves", "--noise-octaves"},
     {"order", "--order"},
