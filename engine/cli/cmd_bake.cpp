@@ -20,6 +20,7 @@
 #include "engine/cli/options/bake_values.h"
 #include "engine/cli/options/band_options.h"
 #include "engine/cli/options/choices.h"
+#include "engine/cli/options/evaluator_option.h"
 #include "engine/cli/options/far_limit_option.h"
 #include "engine/cli/options/nearest_words.h"
 #include "engine/cli/options/noise_options.h"
@@ -78,7 +79,7 @@ constexpr MapFlag kMapFlags[] = {{"--against", "against"},     {"--rest", "rest"
                                  {"--noise-gain", "noise"},    {"--noise-seed", "noise"},
                                  {"--noise-at", "noise"},      {"--noise-ramp", "noiseRamp"},
                                  {"--gain", "bandSum"},        {"--from", "bandSum"},
-                                 {"--carry", "bandSum"}};
+                                 {"--carry", "bandSum"},       {"--evaluator", "evaluator"}};
 
 /// Refuses pictures that cannot be: of what has no colours, or is no file to look up.
 void RefusePictures(BakeArguments const& a) {
@@ -106,6 +107,8 @@ void RefuseWithoutEffect(CLI::App const& verb, std::vector<std::string> const& m
     };
     for (auto const& [flag, member] : kMapFlags) {
         auto const takers = engine::ListMapsThatTake(member);
+        if (member == std::string_view("evaluator") && verb.count("--limit-stencils") > 0)
+            continue;  // it applies far's table
         if (verb.count(flag) == 0 || std::ranges::any_of(takers, isBaked)) continue;
         throw Error(ErrorCode::BadOption,
                     fmt::format("{} has no effect on {}; it is for {}", flag, fmt::join(maps, ", "),
@@ -321,7 +324,9 @@ int Run(BakeArguments const& a, CLI::App const& verb, Context& context) {
     RefuseWithoutEffect(verb, a.options.maps);
     RefusePictures(a);
     RefuseWithoutFarLimit(verb, a.far);
-    engine::BakeOptions const options = MakeOptions(a, context.GetCommon());
+    auto const evaluator = MakeEvaluator(a.far.evaluator, context.GetCommon().precision);
+    engine::BakeOptions options = MakeOptions(a, context.GetCommon());
+    options.evaluator = evaluator.get();
     engine::AuditBounds const bounds = ParseBounds(a);
     if (a.meshes.size() > 1 && a.options.pattern.find("{mesh}") == std::string::npos) {
         throw Error(
@@ -346,6 +351,7 @@ int Run(BakeArguments const& a, CLI::App const& verb, Context& context) {
         misses.insert(misses.end(), own.begin(), own.end());
         bake.model.reset();
     }
+    AddToReport(context.GetReport(), evaluator.get());
     if (context.GetReport()["outputs"].empty()) {
         throw Error(ErrorCode::BadMesh, "no texel is covered by any group in the tiles asked for");
     }
@@ -464,6 +470,7 @@ Verb AddBake(CLI::App& app) {
         ->delimiter(',')
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    AddEvaluatorOption(*verb, a->far.evaluator, "tables of noise, field and bands, or far's,");
     AddFarLimitOptions(*verb, a->far, "at vertices and face centres, beside the exact texels");
     verb->add_option("--groups", a->options.groups, "only faces of these usemtl, g or o groups")
         ->delimiter(',');

@@ -139,6 +139,8 @@ int Run(FitArguments const& a, CLI::App const& verb, Context& context) {
     engine::FitOptions options = a.options;
     options.target = context.MakeTarget(a.output);
     options.farLimit = a.far.GetRule();
+    auto const evaluator = MakeEvaluator(a.far.evaluator, context.GetCommon().precision);
+    options.evaluator = evaluator.get();
     RefuseWithoutFarLimit(verb, a.far);
     engine::RequireMeshEnding(a.output);
     if (options.method == eval::SolveMethod::Direct)
@@ -158,6 +160,7 @@ int Run(FitArguments const& a, CLI::App const& verb, Context& context) {
     }
     engine::FitResult const result = engine::FitToLimit(model, options, context.GetJob());
     AddToReport(context.GetReport(), result);
+    AddToReport(context.GetReport(), evaluator.get());
     WarnOfSingular(context, a.mesh, result.report.singularComponents);
     if (!result.HasConverged() && !a.keepsResult)
         return context.MissTarget(Explain(a.mesh, result, options.tolerance));
@@ -211,6 +214,7 @@ Verb AddFit(CLI::App& app) {
                    "write the result even where it misses the tolerance (exit status 4)");
     verb->add_option("--write-matrix", a->matrix,
                      "also write A, which the fit solves with, as a Matrix Market file (.mtx)");
+    AddEvaluatorOption(*verb, a->far.evaluator, "A, or far's table,");
     AddFarLimitOptions(*verb, a->far, "for the certificate");
     verb->footer("Example:\n  limn fit scenes/spot/spot.obj -o out/spot.fit.obj --report -");
     return {verb, [a, verb](Context& context) { return Run(*a, *verb, context); }};

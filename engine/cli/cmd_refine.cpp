@@ -6,6 +6,7 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
+#include "engine/cli/options/evaluator_option.h"
 #include "engine/cli/options/noise_options.h"
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/option_rules.h"
@@ -44,6 +45,7 @@ struct RefineArguments {
     bool hasNoise = false, isNoiseNormalized = false;
     engine::NoiseOptions noise;
     std::string noiseRamp;
+    std::optional<eval::EvaluatorKind> evaluator;
 };
 
 /// Refuses a mesh with other faces than the rule can have.
@@ -134,8 +136,10 @@ std::string Explain(engine::DifferentialReport const& found, bool isFit, double 
 }
 
 engine::DifferentialResult RefineDifferentially(RefineArguments const& a,
-                                                engine::Model const& model, Context& context) {
+                                                engine::Model const& model,
+                                                eval::TableEvaluator* evaluator, Context& context) {
     auto options = MakeOptions(a, context.GetCommon());
+    options.evaluator = evaluator;
     options.target = context.MakeTarget(a.output);
     auto result = engine::RefineDifferentially(model, options, context.GetJob());
     engine::DifferentialReport const& found = result.report;
@@ -182,9 +186,11 @@ void CheckNoise(RefineArguments const& a, CLI::App const& verb) {
 /// Gives a refined mesh the noise of the model's limit surface at its vertices: a scalar, or
 /// colours, in place of such as there are.
 void AddNoise(RefineArguments const& a, engine::Model const& model, engine::Scene& mesh,
-              Context& context) {
+              eval::TableEvaluator* evaluator, Context& context) {
     context.GetJob().Start("making noise");
-    auto const noise = engine::FindVertexNoise(model, a.noise, a.levels, context.GetJob());
+    engine::NoiseOptions options = a.noise;
+    options.evaluator = evaluator;
+    auto const noise = engine::FindVertexNoise(model, options, a.levels, context.GetJob());
     context.GetReport()["noise"] = {{"singular_levels", noise.singularLevels}};
     std::optional<engine::ColourRamp> ramp;
     if (!a.noiseRamp.empty()) ramp = engine::ColourRamp::Parse(a.noiseRamp);
@@ -214,7 +220,7 @@ void CheckSpace(RefineArguments const& a, CLI::App const& verb) {
 int RefineCurves(RefineArguments const& a, CLI::App const& verb, Context& context) {
     constexpr char const* kWhy = "means nothing with --curve; leave it out";
     RefuseEach(verb, kDifferentialOptions, kWhy);
-    RefuseEach(verb, {"--limit", "--weld", "--tension", "--alpha", "--noise"}, kWhy);
+    RefuseEach(verb, {"--limit", "--weld", "--tension", "--alpha", "--noise", "--evaluator"}, kWhy);
     auto const rule =
         GetRule(a).IsInterpolating() ? eval::CurveRule::FourPoint : eval::CurveRule::CubicBSpline;
     context.GetJob().Start("reading " + a.mesh);
@@ -244,20 +250,26 @@ int RunRefine(RefineArguments const& a, CLI::App const& verb, Context& context) 
     if (a.isCurve) return RefineCurves(a, verb, context);
     CheckSpace(a, verb);
     far_ext::CheckTension(GetRule(a));
+    auto const evaluator = MakeEvaluator(a.evaluator, context.GetCommon().precision);
     auto const model = ApplyRule(a, context.GetCommon(), context.Load(a.mesh));
     context.GetReport()["inputs"].back()["subdivision"] =
         engine::DescribeSubdivision(model.GetCage());
     engine::DifferentialResult result;
     result.report.converged = true;
     if (a.isDifferential) {
-        result = RefineDifferentially(a, model, context);
+        result = RefineDifferentially(a, model, evaluator.get(), context);
     } else {
-        result.mesh = engine::RefineUniformly(
-            model, {.levels = a.levels, .toLimit = a.toLimit, .rule = GetRule(a), .alpha = a.alpha},
-            context.GetJob());
+        result.mesh = engine::RefineUniformly(model,
+                                              {.levels = a.levels,
+                                               .toLimit = a.toLimit,
+                                               .rule = GetRule(a),
+                                               .alpha = a.alpha,
+                                               .evaluator = evaluator.get()},
+                                              context.GetJob());
         result.report.precision = context.ChoosePrecision(a.output, result.mesh.positions);
     }
-    if (a.hasNoise) AddNoise(a, model, result.mesh, context);
+    if (a.hasNoise) AddNoise(a, model, result.mesh, evaluator.get(), context);
+    AddToReport(context.GetReport(), evaluator.get());
     bool const isDone = result.report.converged;
     if (isDone || a.keepsResult) context.WriteMesh(a.output, result.mesh, result.report.precision);
     context.GetReport()["vertices"] = result.mesh.cage.numVertices;
@@ -320,6 +332,7 @@ Verb AddRefine(CLI::App& app) {
                     "generalised Catmull-Clark in every step, 0 (default) to 1: the surface of "
                     "limn fit --alpha-rule stationary",
                     {0.0, 1.0});
+    AddEvaluatorOption(*verb, a->evaluator, "the rules of each level and, of --limit, A");
     verb->add_flag("--noise", a->hasNoise,
                    "add noise on the limit surface as a scalar 'noise' (.ply) or, with "
                    "--noise-ramp, as colours");

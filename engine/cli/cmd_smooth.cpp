@@ -7,11 +7,13 @@
 
 #include "engine/cli/cli.h"
 #include "engine/cli/names.h"
+#include "engine/cli/options/evaluator_option.h"
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/option_rules.h"
 #include "engine/cli/options/word_option.h"
 #include "engine/images/png.h"
 #include "engine/io/file.h"
+#include "engine/io/matrix_market.h"
 #include "engine/io/mesh_writer.h"
 #include "engine/measure/mesh_picture.h"
 #include "engine/scene/subdivision_names.h"
@@ -24,7 +26,7 @@ namespace limn::cli {
 namespace {
 
 struct SmoothArguments {
-    std::string mesh, output, widthMap, widthEdges, widthTexture, picture;
+    std::string mesh, output, widthMap, widthEdges, widthTexture, picture, stencils;
     std::vector<double> view{1.0, 0.6, 0.8};
     double width = 0.0, widthFactor = engine::kDefaultWidthFactor,
            widthScale = engine::kDefaultWidthFactor;
@@ -33,6 +35,7 @@ struct SmoothArguments {
     std::optional<std::string> keptFeatures;
     bool isLocal = false, isGraph = false, preservesVolume = false, limitsWidth = false,
          keepsResult = false;
+    std::optional<eval::EvaluatorKind> evaluator;
     engine::SmoothOptions options;
 
     bool IsBisection() const { return options.refinement == engine::SmoothRefinement::Bisect; }
@@ -63,6 +66,7 @@ void CheckSolver(SmoothArguments const& a, CLI::App const& verb) {
 void CheckOptions(SmoothArguments const& a, CLI::App const& verb) {
     engine::RequireMeshEnding(a.output);
     RequirePngEnding("--picture", a.picture);
+    if (!a.stencils.empty()) RequirePrefix("--write-stencils", a.stencils);
     CheckWidths(a, verb);
     CheckSolver(a, verb);
     RefuseTogether(verb, {"--graph", "--preserve-volume"});
@@ -100,9 +104,11 @@ engine::SmoothStop MakeStop(SmoothArguments const& a) {
     return a.tolerance ? engine::StopAtResidual{*a.tolerance} : engine::StopAtResidual{};
 }
 
-/// \param meanEdge  of the mesh
+/// \param meanEdge   of the mesh
+/// \param evaluator  null: none
 engine::SmoothOptions MakeOptions(SmoothArguments const& a, CLI::App const& verb,
-                                  Context const& context, double meanEdge) {
+                                  Context const& context, double meanEdge,
+                                  eval::TableEvaluator* evaluator) {
     engine::SmoothOptions options = a.options;
     options.stop = MakeStop(a);
     if (options.adaptive && verb.count("--levels") == 0) options.levels = 8;
@@ -114,6 +120,8 @@ engine::SmoothOptions MakeOptions(SmoothArguments const& a, CLI::App const& verb
     if (a.keepsResult) options.onCollapse = engine::OnCollapse::KeepResult;
     options.precision = context.GetCommon().GetPrecision();
     options.target = context.MakeTarget(a.output);
+    options.evaluator = evaluator;
+    options.keepsSweeps = !a.stencils.empty();
     return options;
 }
 
@@ -197,14 +205,44 @@ std::string Explain(std::string const& path, engine::SmoothReport const& found) 
         path, missed.level, missed.residual, missed.sweeps);
 }
 
+std::string NameMatrix(std::string const& prefix, int level, char const* which) {
+    return fmt::format("{}.{}.{}.mtx", prefix, level, which);
+}
+
+/// What will be written; two files a level of --write-stencils.
+std::vector<NamedFile> ListOutputs(SmoothArguments const& a) {
+    std::vector<NamedFile> files{{"-o", a.output}, {"--picture", a.picture}};
+    if (a.stencils.empty()) return files;
+    for (int level = std::min(1, a.options.levels); level <= a.options.levels; ++level) {
+        for (char const* which : {"sweep", "load"})
+            files.push_back({"--write-stencils", NameMatrix(a.stencils, level, which)});
+    }
+    return files;
+}
+
+void AddSweeps(std::string const& prefix, std::vector<engine::LevelSweep> const& sweeps,
+               engine::MeshSequence& files) {
+    for (auto const& [level, matrices] : sweeps) {
+        auto const add = [&](char const* which, far_ext::SparseRows const& rows,
+                             std::string const& columns) {
+            engine::WriteMatrixMarket(files.Open(NameMatrix(prefix, level, which)),
+                                      far_ext::AsMatrix(rows, rows.GetNumRows()),
+                                      {fmt::format("vertices of level {}", level), columns});
+        };
+        add("sweep", matrices.sweep, "the same, before a sweep");
+        add("load", matrices.load, "the same, of the start surface");
+    }
+}
+
 int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     CheckOptions(a, verb);
-    engine::CheckOptions(MakeOptions(a, verb, context, 1.0));
+    auto const evaluator = MakeEvaluator(a.evaluator, context.GetCommon().precision);
+    engine::CheckOptions(MakeOptions(a, verb, context, 1.0, evaluator.get()));
     context.KeepApart({{"MESH", a.mesh},
                        {"--width-map", a.widthMap},
                        {"--width-edges", a.widthEdges},
                        {"--width-texture", a.widthTexture}},
-                      {{"-o", a.output}, {"--picture", a.picture}});
+                      ListOutputs(a));
     auto model = context.Load(a.mesh,
                               Context::Defects::Keep);  // engine::Smooth warns of them, or refuses
     if (!context.GetCommon().scheme || a.IsBisection() || a.options.adaptive)
@@ -212,9 +250,11 @@ int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     context.GetReport()["inputs"].back()["subdivision"] =
         engine::DescribeSubdivision(model.GetCage());
     double const meanEdge = far_ext::FindMeanEdgeLength(model.GetLevel(), model.GetPositions());
-    auto [mesh, found] = engine::Smooth(model, MakeWidths(a, verb, model),
-                                        MakeOptions(a, verb, context, meanEdge), context.GetJob());
+    auto [mesh, found, sweeps] =
+        engine::Smooth(model, MakeWidths(a, verb, model),
+                       MakeOptions(a, verb, context, meanEdge, evaluator.get()), context.GetJob());
     AddToReport(context.GetReport(), found, a.options);
+    AddToReport(context.GetReport(), evaluator.get());
     if (!found.HasConverged() && !a.keepsResult) return context.MissTarget(Explain(a.mesh, found));
 
     if (engine::GetEnding(a.output) == ".obj")  // which has no place for the widths
@@ -222,6 +262,7 @@ int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     engine::MeshSequence files;
     context.GetJob().Start("writing " + a.output);
     auto const warnings = files.Add(a.output, *mesh, found.precision);
+    AddSweeps(a.stencils, sweeps, files);
     if (!a.picture.empty()) {
         context.GetJob().Start("drawing " + a.picture);
         engine::WritePng(files.Open(a.picture),
@@ -273,6 +314,11 @@ void AddSolverOptions(CLI::App& verb, SmoothArguments& a) {
                           {1, 1000000}));
     solve(AddNumberOption(verb, "--tolerance", a.tolerance,
                           "cg: to this residual on every level (default 1e-6)", {1e-14, 1.0}));
+    solve(AddEvaluatorOption(verb, a.evaluator, "interpolation and sweeps of --solver jacobi"));
+    solve(verb.add_option("--write-stencils", a.stencils,
+                          "jacobi: each level K's sweep as matrices, PREFIX.K.sweep.mtx and "
+                          "PREFIX.K.load.mtx")
+              ->type_name("PREFIX"));
     solve(AddNumberOption(verb, "--adaptive", a.options.adaptive,
                           "cut triangles (in two) only where the result would be off by more than "
                           "this share of MESH's diagonal, and settle to a fifth of it",

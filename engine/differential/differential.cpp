@@ -12,7 +12,7 @@
 #include "eval/differential/area_fit.h"
 #include "eval/differential/dirmag.h"
 #include "eval/differential/reconstruct.h"
-#include "eval/differential/subdivide_values.h"
+#include "eval/differential/value_refiner.h"
 #include "far_ext/differential/laplacian.h"
 #include "far_ext/error.h"
 #include "far_ext/rows/points.h"
@@ -78,6 +78,7 @@ public:
         far_ext::ControlMesh curved = model.GetCage();
         curved.options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
         _refiner = MakeUniformRefiner(curved, model.GetPath(), options.levels);
+        _values.emplace(*_refiner, options.evaluator);
     }
 
     DifferentialResult Run();
@@ -101,6 +102,7 @@ private:
     Job& _job;
     DifferentialReport _report;
     std::unique_ptr<Far::TopologyRefiner> _refiner;
+    std::optional<eval::ValueRefiner> _values;
     Rows _spatial;  // positions of the level reached in space
     Rows _start;    // those where differential coordinates begin
 };
@@ -148,7 +150,7 @@ Rows DifferentialRefinement::Subdivide(Rows deltas) {
     }
     for (; level < _refiner->GetMaxLevel(); ++level) {
         _job.CheckStopped();
-        deltas = eval::SubdivideValues<3>(*_refiner, level + 1, _options.rule, deltas);
+        deltas = _values->Refine<3>(level + 1, deltas, _options.rule);
     }
     return deltas;
 }
@@ -158,7 +160,7 @@ void DifferentialRefinement::RefineInSpace() {
     _start = _spatial;
     for (int level = 1; level <= _refiner->GetMaxLevel(); ++level) {
         _job.CheckStopped();
-        _spatial = eval::SubdivideValues<3>(*_refiner, level, _options.rule, _spatial);
+        _spatial = _values->Refine<3>(level, _spatial, _options.rule);
         if (level == _options.spatialLevels) _start = _spatial;
     }
 }
@@ -251,7 +253,7 @@ void DifferentialRefinement::CheckSize() const {
 
 DifferentialResult DifferentialRefinement::Run() {
     CheckSize();
-    Scene fine = RefineAllButPositions(_model, *_refiner, _job);
+    Scene fine = RefineAllButPositions(_model, *_values, _job);
     fine.positions = FindPositions();
     return {std::move(fine), _report};
 }

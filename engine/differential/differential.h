@@ -9,6 +9,7 @@
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
 #include "eval/differential/mesh_curvature.h"
+#include "eval/stencils/table_evaluator.h"
 #include "far_ext/differential/subdivision_rows.h"
 
 namespace limn::engine {
@@ -28,6 +29,9 @@ struct DifferentialOptions {
     double tolerance = 1e-8;     ///< of the linear solve's residual
     double fitTolerance = 0.01;  ///< of the residual with a Laplacian that knows areas
     CurvatureEdit edit;
+    /// Applies the rule, on coordinates and in space, as tables in float; null: in double.
+    /// Directions and magnitudes are in double.
+    eval::TableEvaluator* evaluator = nullptr;
     Orientation orientation = Orientation::Right;
     /// The file that the mesh is for: its coordinates are rounded to what that will hold. None:
     /// they stay doubles.

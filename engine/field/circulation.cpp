@@ -45,12 +45,15 @@ void ForEachPiece(Far::TopologyRefiner const& refiner, int level, int last, Inde
 }  // namespace
 
 std::vector<EdgeCirculation> FindCirculations(Model const& model, std::span<double const> form,
-                                              std::span<EdgeValue const> edges, Job& job) {
+                                              std::span<EdgeValue const> edges, Job& job,
+                                              eval::TableEvaluator* evaluator) {
     int const last = FindSettledLevel(model.GetCage());
     auto const refiner = MakeUniformRefiner(model.GetCage(), model.GetPath(), last + 1);
     std::vector<double> values(form.begin(), form.end());
-    for (int level = 1; level <= last; ++level)
-        values = far_ext::BuildFormStencils(*refiner, level).s1.Apply(values);
+    for (int level = 1; level <= last; ++level) {
+        values = eval::ApplyRows(evaluator, far_ext::FormStencils::kS1,
+                                 far_ext::BuildFormStencils(*refiner, level).s1, values);
+    }
     far_ext::EdgeLimits limits(*refiner, last);
     std::vector<EdgeCirculation> circulations;
     for (auto const& [edge, from, to, value, line, kind] : edges) {

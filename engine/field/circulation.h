@@ -7,6 +7,7 @@
 #include "engine/io/edge_values.h"
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
+#include "eval/stencils/table_evaluator.h"
 
 namespace limn::engine {
 
@@ -21,10 +22,12 @@ struct EdgeCirculation {
 ///
 /// \param form    per edge of the mesh
 /// \param edges   what is to be looked at; their values do not count
+/// \param evaluator  subdivides the form by tables in float; null: in double
 /// \throws Error  as far_ext::EdgeLimits, RefineUniformly
 /// \throws Stopped
 /// Source         [Forms 7.1]
 std::vector<EdgeCirculation> FindCirculations(Model const& model, std::span<double const> form,
-                                              std::span<EdgeValue const> edges, Job& job);
+                                              std::span<EdgeValue const> edges, Job& job,
+                                              eval::TableEvaluator* evaluator = nullptr);
 
 }  // namespace limn::engine

@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include <tbb/parallel_for.h>
+#include <numeric>
 
 #include "engine/field/control_form.h"
 #include "engine/scene/refine.h"
-#include "eval/differential/refine_values.h"
+#include "eval/differential/value_refiner.h"
 #include "eval/forms/vertex_covectors.h"
 #include "eval/surface/vertex_limits.h"
 #include "far_ext/differential/subdivision_rows.h"
@@ -53,8 +52,12 @@ double FindLargestDifference(far_ext::SparseRows const& a, far_ext::SparseRows c
     return largest;
 }
 
-/// Refines the form, and checks at each step that its stencils commute.
-Form Subdivide(Far::TopologyRefiner const& refiner, Form form, FieldAudit& audit, Job& job) {
+/// Refines the form and its curl, and checks at each step that their stencils commute.
+void Subdivide(eval::TableEvaluator* evaluator, Field& field, Job& job) {
+    Far::TopologyRefiner const& refiner = *field.refined;
+    FieldAudit& audit = field.audit;
+    Form curl = far_ext::BuildD1(refiner.GetLevel(0)).Apply(field.controlForm);
+    field.form = field.controlForm;
     for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
         job.CheckStopped();
         auto const coarse = refiner.GetLevel(level - 1), fine = refiner.GetLevel(level);
@@ -69,27 +72,31 @@ Form Subdivide(Far::TopologyRefiner const& refiner, Form form, FieldAudit& audit
             std::max(audit.commutationD1,
                      FindLargestDifference(far_ext::BuildD1(fine), step.s1, step.s2,
                                            far_ext::BuildD1(coarse), coarse.GetNumEdges()));
-        form = step.s1.Apply(form);
+        field.form = eval::ApplyRows(evaluator, step.kS1, step.s1, field.form);
+        if (evaluator) curl = eval::ApplyRows(evaluator, step.kS2, step.s2, curl);
     }
-    return form;
+    // In double S2 of the curl is the form's own, to rounding.
+    auto const last = refiner.GetLevel(refiner.GetMaxLevel());
+    field.integrals = evaluator ? std::move(curl) : far_ext::BuildD1(last).Apply(field.form);
 }
 
 std::array<double, 3> ToArray(Eigen::Vector3d const& v) {
     return {v[0], v[1], v[2]};
 }
 
-void FindVertexVectors(Field& field) {
+void FindVertexVectors(eval::TableEvaluator* evaluator, Field& field) {
     int const last = field.refined->GetMaxLevel();
-    Index const count = field.refined->GetLevel(last).GetNumVertices();
-    field.vectors.resize(count);
+    std::vector<Index> vertices(
+        static_cast<size_t>(field.refined->GetLevel(last).GetNumVertices()));
+    std::iota(vertices.begin(), vertices.end(), Index(0));
+    auto const covectors = eval::VertexCovectors(*field.refined, last)
+                               .FindAll(vertices, field.form, field.mesh.positions, evaluator);
     field.mesh.normals.resize(field.mesh.positions.size());
     far_ext::MutablePoints const normals(field.mesh.normals);
-    eval::VertexCovectors const covectors(*field.refined, last);
-    tbb::parallel_for(Index(0), count, [&](Index vertex) {
-        auto const covector = covectors.Find(vertex, field.form, field.mesh.positions);
-        field.vectors[vertex] = ToArray(covector.GetVector());
-        normals[vertex] = covector.GetNormal();
-    });
+    for (Index vertex : vertices) {
+        field.vectors.push_back(ToArray(covectors[vertex].GetVector()));
+        normals[vertex] = covectors[vertex].GetNormal();
+    }
 }
 
 void FindFaceVectors(Field& field) {
@@ -115,15 +122,16 @@ Field DesignField(Model const& model, FieldOptions const& options, Job& job) {
     field.refined = MakeUniformRefiner(model.GetCage(), model.GetPath(), levels);
     field.values = std::move(design.values);
     field.controlForm = std::move(design.form);
-    field.form = Subdivide(*field.refined, field.controlForm, field.audit, job);
-    field.mesh = RefineAllButPositions(model, *field.refined, job);
+    Subdivide(options.evaluator, field, job);
+    eval::ValueRefiner values(*field.refined, options.evaluator);
+    field.mesh = RefineAllButPositions(model, values, job);
     field.mesh.positions = model.GetPositions();
     for (int level = 1; level <= levels; ++level) {
-        field.mesh.positions = eval::RefineValues<3>(*field.refined, level, field.mesh.positions);
-        field.values = eval::RefineValues<1>(*field.refined, level, field.values);
+        field.mesh.positions = values.Refine<3>(level, field.mesh.positions);
+        field.values = values.Refine<1>(level, field.values);
     }
     job.Start("finding vectors");
-    if (options.hasVertexVectors) FindVertexVectors(field);
+    if (options.hasVertexVectors) FindVertexVectors(options.evaluator, field);
     FindFaceVectors(field);
 
     auto const last = field.refined->GetLevel(levels);

@@ -15,6 +15,7 @@
 #include "eval/forms/field_match.h"
 #include "eval/forms/least_connection.h"
 #include "eval/forms/pinned_function.h"
+#include "eval/stencils/table_evaluator.h"
 
 namespace limn::engine {
 
@@ -60,6 +61,8 @@ struct FieldOptions {
     int levels = 0;  ///< refinements of the result
     bool hasVertexVectors =
         true;  ///< limits at vertices, too; takes one level at least where faces are not all quads
+    /// Applies refinement and vectors at vertices as tables, in float; null: all in double.
+    eval::TableEvaluator* evaluator = nullptr;
 };
 
 /// What a field does along boundaries that it has data for.
@@ -93,8 +96,9 @@ struct Field {
     std::unique_ptr<Far::TopologyRefiner> refined;  ///< its last level is the refined mesh
     std::vector<double> controlForm;                ///< per edge of the mesh
     std::vector<double> form;                       ///< per edge of the refined mesh
-    std::vector<double> values;  ///< per vertex of it: the function whose gradient the field has
-    Scene mesh;                  ///< refined; with limit normals where there are vertex vectors
+    std::vector<double> values;     ///< per vertex of it: the function whose gradient the field has
+    std::vector<double> integrals;  ///< per face of it: the field's curl
+    Scene mesh;                     ///< refined; with limit normals where there are vertex vectors
     std::vector<std::array<double, 3>>
         vectors;  ///< per vertex: the limit's tangent vector; or empty
     std::vector<std::array<double, 3>> faceVectors;  ///< per face, at its middle

@@ -146,7 +146,7 @@ Streamlines TraceStreamlines(Model const& model, std::span<double const> form,
     RequireLimit(model);
     job.Start("preparing streamlines");
     auto const start = std::chrono::steady_clock::now();
-    eval::FlowSurface const flow(model.GetCage(), model.GetPositions(), form);
+    eval::FlowSurface const flow(model.GetCage(), model.GetPositions(), form, options.evaluator);
     auto const line = MakeLineOptions(model, flow, options, job);
     std::vector<eval::SurfacePlace> seeds;
     if (options.seeds) seeds = FindSeeds(model, flow, *options.seeds);

@@ -22,8 +22,9 @@ struct StreamlineOptions {
     std::optional<double> step;
     /// Of a line. None: any with a separation, else 10 times the diagonal of the bounding box.
     std::optional<double> maxLength;
-    double stopDistance = 0.5;   ///< of D: how near to another one a line may come
-    bool isForwardOnly = false;  ///< from seeds with the field only
+    double stopDistance = 0.5;                  ///< of D: how near to another one a line may come
+    bool isForwardOnly = false;                 ///< from seeds with the field only
+    eval::TableEvaluator* evaluator = nullptr;  ///< as eval::FieldSurface
 };
 
 /// Lines along a field, their places on the mesh's faces.

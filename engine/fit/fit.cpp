@@ -12,6 +12,7 @@
 #include "engine/scene/require_limit.h"
 #include "eval/fit/alpha_steps.h"
 #include "eval/surface/vertex_limits.h"
+#include "far_ext/error.h"
 #include "far_ext/rows/points.h"
 #include "far_ext/topology/refiner.h"
 
@@ -223,15 +224,23 @@ bool FitResult::HasConverged() const {
 }
 
 FitResult FitToLimit(Model const& model, FitOptions const& options, Job& job) {
+    if (options.evaluator && options.method == eval::SolveMethod::Direct) {
+        throw Error(ErrorCode::BadOption,
+                    "`evaluator` and `method` direct exclude each other: a factorisation applies "
+                    "no table");
+    }
     auto const start = std::chrono::steady_clock::now();
     if (options.alpha == 0.0) RequireLimit(model);  // else n-gons are subdivided first
     job.Start("building the limit matrix");
     eval::Interpolator const interpolator(model.GetRefiner(), 0,
                                           {.alpha = options.alpha, .alphaRule = options.alphaRule});
+    std::optional<eval::FixedTable> table;
+    if (options.evaluator) table = interpolator.MakeTable(*options.evaluator);
     eval::InterpolateOptions const solve{.method = options.method,
                                          .tolerance = options.tolerance,
                                          .maxIterations = options.maxIterations,
-                                         .onIteration = [&](int, double) { job.CheckStopped(); }};
+                                         .onIteration = [&](int, double) { job.CheckStopped(); },
+                                         .table = table ? &*table : nullptr};
     FitResult result;
     result.mesh = model.MakeScene();
     job.Start("solving for positions");

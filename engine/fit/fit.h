@@ -26,6 +26,8 @@ struct FitOptions {
     /// Certifies by OpenSubdiv's limit stencils in place of the limit, and says how far they are
     /// from it.
     std::optional<FarLimitRule> farLimit{};
+    /// Applies A as a table in float; residuals stay in double. Null: none.
+    eval::TableEvaluator* evaluator = nullptr;
 };
 
 /// How far the limit surface of the result, rounded as it is, passes from the vertices that were
@@ -61,7 +63,7 @@ struct FitResult {
 /// \param job     told of a precision that was not asked for, or loses too much, and of a control
 ///                mesh that is much larger than the model
 /// \throws Error        BadMesh: a coordinate that is no number.  BadOption: alpha outside [0, 1]
-///                      or with a scheme that has none
+///                      or with a scheme that has none; an evaluator for a factorisation
 /// \throws Stopped
 /// Source  [LaiCheng11] Sec. 4; [Limit 6]
 FitResult FitToLimit(Model const& model, FitOptions const& options, Job& job);

@@ -10,7 +10,7 @@
 
 #include "engine/noise/gradient_noise.h"
 #include "engine/scene/refine.h"
-#include "eval/differential/refine_values.h"
+#include "eval/differential/value_refiner.h"
 #include "eval/fit/interpolate.h"
 #include "eval/surface/surface_sample.h"
 #include "far_ext/error.h"
@@ -96,9 +96,9 @@ std::vector<double> FitOctave(Model const& model, eval::Interpolator const& inte
     return control;
 }
 
-/// \param refiner  refined uniformly as far as the last octave, or farther
-Octaves AddUpOctaves(Model const& model, Far::TopologyRefiner const& refiner,
-                     NoiseOptions const& options, Job& job) {
+/// \param values  of a refiner that is refined uniformly as far as the last octave, or farther
+Octaves AddUpOctaves(Model const& model, eval::ValueRefiner& values, NoiseOptions const& options,
+                     Job& job) {
     Octaves octaves;
     std::vector<double> positions = model.GetPositions();
     double frequency =
@@ -107,10 +107,10 @@ Octaves AddUpOctaves(Model const& model, Far::TopologyRefiner const& refiner,
     for (int level = 0; level < options.octaves; ++level) {
         job.CheckStopped();
         if (level > 0) {
-            positions = eval::RefineValues<3>(refiner, level, positions);
-            octaves.control = eval::RefineValues<1>(refiner, level, octaves.control);
+            positions = values.Refine<3>(level, positions);
+            octaves.control = values.Refine<1>(level, octaves.control);
         }
-        eval::Interpolator const interpolator(refiner, level);
+        eval::Interpolator const interpolator(values.GetRefiner(), level);
         auto const points =
             options.at == NoiseAt::Limit ? interpolator.FindLimits(positions, 3) : positions;
         auto const octave = MakeOctave(points, level, frequency, amplitude, options.seed, job);
@@ -133,7 +133,8 @@ Octaves AddUpOctaves(Model const& model, Far::TopologyRefiner const& refiner,
 SurfaceNoise::SurfaceNoise(Model const& model, NoiseOptions const& options, Job& job) {
     int const levels = CheckOptions(model, options);
     auto const refiner = MakeUniformRefiner(model.GetCage(), model.GetPath(), levels);
-    Octaves octaves = AddUpOctaves(model, *refiner, options, job);
+    eval::ValueRefiner values(*refiner, options.evaluator);
+    Octaves octaves = AddUpOctaves(model, values, options, job);
     _values = std::move(octaves.control);
     _low = octaves.low;
     _high = octaves.high;
@@ -148,10 +149,11 @@ SurfaceNoise::SurfaceNoise(Model const& model, NoiseOptions const& options, Job&
 VertexNoise FindVertexNoise(Model const& model, NoiseOptions const& options, int level, Job& job) {
     int const octaveLevel = CheckOptions(model, options), last = std::max(level, octaveLevel);
     auto const refiner = MakeUniformRefiner(model.GetCage(), model.GetPath(), last);
-    Octaves octaves = AddUpOctaves(model, *refiner, options, job);
+    eval::ValueRefiner values(*refiner, options.evaluator);
+    Octaves octaves = AddUpOctaves(model, values, options, job);
     for (int next = octaveLevel + 1; next <= last; ++next) {
         job.CheckStopped();
-        octaves.control = eval::RefineValues<1>(*refiner, next, octaves.control);
+        octaves.control = values.Refine<1>(next, octaves.control);
     }
     VertexNoise noise{eval::Interpolator(*refiner, last).FindLimits(octaves.control, 1),
                       octaves.low, octaves.high, std::move(octaves.singularLevels)};

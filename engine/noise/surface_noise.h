@@ -8,6 +8,7 @@
 
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
+#include "eval/stencils/table_evaluator.h"
 #include "eval/surface/face_tree.h"
 #include "eval/surface/refined_faces.h"
 #include "far_ext/enum_words.h"
@@ -30,6 +31,8 @@ struct NoiseOptions {
     double gain = 0.5;  ///< amplitude from octave to octave
     uint64_t seed = 0;
     NoiseAt at = NoiseAt::Limit;
+    /// Applies the rules of refinement as tables in float; null: in double.
+    eval::TableEvaluator* evaluator = nullptr;
 };
 
 /// Noise on a limit surface, without texture coordinates: for each level i of refinement, noise of

@@ -4,13 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "engine/scene/scene_checks.h"
-#include "eval/differential/subdivide_values.h"
+#include "eval/differential/value_refiner.h"
 #include "eval/fit/alpha_steps.h"
+#include "eval/fit/limit_application.h"
 #include "eval/surface/vertex_limits.h"
 #include "far_ext/error.h"
 #include "far_ext/topology/refined_cage.h"
@@ -23,24 +25,29 @@ namespace {
 using Level = Far::TopologyLevel;
 using far_ext::SubdivisionRule;
 
-/// Refines values of length N through all levels: of vertices, or of a face-varying channel.
-///
-/// \param alpha  of vertices; none: the plain rule
-template <size_t N>
-std::vector<double> RefineToLast(Far::TopologyRefiner const& refiner, std::span<double const> base,
-                                 Job& job, int fvarChannel = -1,
-                                 eval::AlphaSteps const* alpha = nullptr) {
-    std::vector<double> values(base.begin(), base.end());
-    for (int level = 1; level <= refiner.GetMaxLevel(); ++level) {
+std::vector<double> RefineUVs(eval::ValueRefiner& refiner, std::vector<double> values, Job& job) {
+    for (int level = 1; level <= refiner.GetRefiner().GetMaxLevel(); ++level) {
         job.CheckStopped();
-        auto fine = eval::RefineValues<N>(refiner, level, values, fvarChannel);
-        if (alpha) alpha->Add(level - 1, values, static_cast<int>(N), fine);
+        values = refiner.RefineFVar<2>(level, values, 0);
+    }
+    return values;
+}
+
+/// A number per vertex through all levels.
+///
+/// \param alpha  none: the plain rule
+std::vector<double> RefineNumbers(eval::ValueRefiner& refiner, std::vector<double> values,
+                                  eval::AlphaSteps const* alpha, Job& job) {
+    for (int level = 1; level <= refiner.GetRefiner().GetMaxLevel(); ++level) {
+        job.CheckStopped();
+        auto fine = refiner.Refine<1>(level, values);
+        if (alpha) alpha->Add(level - 1, values, 1, fine);
         values = std::move(fine);
     }
     return values;
 }
 
-Primvar RefinePrimvar(Far::TopologyRefiner const& refiner, Primvar const& primvar,
+Primvar RefinePrimvar(eval::ValueRefiner& refiner, Primvar const& primvar,
                       eval::AlphaSteps const* alpha, Job& job) {
     Primvar fine{primvar.name, primvar.numChannels, {}};
     size_t const n = static_cast<size_t>(primvar.numChannels);
@@ -48,7 +55,7 @@ Primvar RefinePrimvar(Far::TopologyRefiner const& refiner, Primvar const& primva
         std::vector<double> channel;
         for (size_t i = c; i < primvar.values.size(); i += n)
             channel.push_back(static_cast<double>(primvar.values[i]));
-        auto const refined = RefineToLast<1>(refiner, channel, job, -1, alpha);
+        auto const refined = RefineNumbers(refiner, std::move(channel), alpha, job);
         fine.values.resize(refined.size() * n);
         for (size_t i = 0; i < refined.size(); ++i)
             fine.values[i * n + c] = static_cast<float>(refined[i]);
@@ -86,9 +93,18 @@ std::unique_ptr<eval::AlphaSteps> MakeAlphaSteps(Far::TopologyRefiner const& ref
 }
 
 /// Refined vertices at their limit. Vertices without a face that has one stay.
-std::vector<double> MoveToLimit(Scene const& fine, Job& job) {
+///
+/// \param evaluator  null: without a limit matrix, in double
+std::vector<double> MoveToLimit(Scene const& fine, eval::TableEvaluator* evaluator, Job& job) {
     job.Start("moving vertices to the limit");
     auto const refiner = far_ext::CreateRefiner(fine.cage);
+    if (evaluator) {
+        std::vector<double> limits(fine.positions.size());
+        NamingMesh(fine.path, [&] {
+            return eval::LimitApplication::Build(*refiner, {}, evaluator);
+        }).Apply(fine.positions, 3, limits);
+        return limits;
+    }
     auto const surface = NamingMesh(fine.path, [&] { return eval::LimitSurface(*refiner); });
     return eval::EvaluateVertexLimits(surface, fine.positions, 3, eval::FaceTree::kLimitDepth,
                                       [&] { job.CheckStopped(); })
@@ -148,16 +164,17 @@ void InheritFromFaces(Model const& model, std::vector<Index> const& baseFaces, S
     }
 }
 
-Scene RefineAllButPositions(Model const& model, Far::TopologyRefiner const& refiner, Job& job,
+Scene RefineAllButPositions(Model const& model, eval::ValueRefiner& values, Job& job,
                             eval::AlphaSteps const* alpha) {
+    Far::TopologyRefiner const& refiner = values.GetRefiner();
     job.Start("refining attributes");
     Scene fine;
     fine.path = model.GetPath();
     fine.name = model.GetName();
     fine.cage = far_ext::MakeRefinedCage(refiner, model.GetCage());
-    if (model.HasUVs()) fine.uvs = RefineToLast<2>(refiner, model.GetUVs(), job, 0);
+    if (model.HasUVs()) fine.uvs = RefineUVs(values, model.GetUVs(), job);
     for (Primvar const& primvar : model.GetPrimvars())
-        fine.primvars.push_back(RefinePrimvar(refiner, primvar, alpha, job));
+        fine.primvars.push_back(RefinePrimvar(values, primvar, alpha, job));
     InheritFromFaces(model, far_ext::FindBaseFaces(refiner, refiner.GetMaxLevel()), fine);
     return fine;
 }
@@ -168,12 +185,13 @@ Scene RefineUniformly(Model const& model, RefineOptions const& options, Job& job
     job.Start("refining topology");
     auto const refiner = MakeUniformRefiner(model.GetCage(), model.GetPath(), options.levels);
     auto const alpha = MakeAlphaSteps(*refiner, options);
-    Scene fine = RefineAllButPositions(model, *refiner, job, alpha.get());
+    eval::ValueRefiner values(*refiner, options.evaluator);
+    Scene fine = RefineAllButPositions(model, values, job, alpha.get());
     job.Start("refining positions");
     fine.positions = model.GetPositions();
     for (int level = 1; level <= options.levels; ++level) {
         job.CheckStopped();
-        auto children = eval::SubdivideValues<3>(*refiner, level, options.rule, fine.positions);
+        auto children = values.Refine<3>(level, fine.positions, options.rule);
         if (alpha) alpha->Add(level - 1, fine.positions, 3, children);
         fine.positions = std::move(children);
     }
@@ -181,7 +199,7 @@ Scene RefineUniformly(Model const& model, RefineOptions const& options, Job& job
     if (alpha)
         fine.positions = alpha->FindLimits(fine.positions, 3);
     else if (!options.rule.IsInterpolating())
-        fine.positions = MoveToLimit(fine, job);
+        fine.positions = MoveToLimit(fine, options.evaluator, job);
     return fine;
 }
 

@@ -12,7 +12,9 @@
 
 namespace limn::eval {
 class AlphaSteps;
-}
+class TableEvaluator;
+class ValueRefiner;
+}  // namespace limn::eval
 
 namespace limn::engine {
 
@@ -25,6 +27,9 @@ struct RefineOptions {
     /// Of positions and primvars by the scheme's rule: generalised Catmull-Clark in every step, 0
     /// (plain) to 1. Source [LaiCheng11] Appendix A; [Limit 4]
     double alpha = 0.0;
+    /// Applies the rules, and the limit matrix, as tables in float; null: all in double. What alpha
+    /// adds is in double.
+    eval::TableEvaluator* evaluator = nullptr;
 };
 
 /// Refines a mesh uniformly by OpenSubdiv's rules, in double.
@@ -53,8 +58,9 @@ void WarnOfRoughVertices(Model const& model, far_ext::TunedRule const& rule, Job
 
 /// All of RefineUniformly's result but the positions.
 ///
-/// \param alpha  of primvars; none: the plain rule
-Scene RefineAllButPositions(Model const& model, Far::TopologyRefiner const& refiner, Job& job,
+/// \param values  refines them
+/// \param alpha   of primvars; none: the plain rule
+Scene RefineAllButPositions(Model const& model, eval::ValueRefiner& values, Job& job,
                             eval::AlphaSteps const* alpha = nullptr);
 
 /// Gives refined faces the groups of the base faces they lie in, and leaves those without texture

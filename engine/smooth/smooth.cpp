@@ -85,7 +85,8 @@ public:
         }
         if (_options.adaptive && isDone) DescribeAdaption();
         _job.Finish();
-        return {isDone ? std::optional(MakeRoundedScene()) : std::nullopt, std::move(_report)};
+        return {isDone ? std::optional(MakeRoundedScene()) : std::nullopt, std::move(_report),
+                std::move(_sweeps)};
     }
 
 private:
@@ -102,7 +103,8 @@ private:
                         if (!_isSettling) AdvanceTo(share);
                     },
                 .order = _options.order,
-                .features = ScaleFeatures(_model, _options, _unit)};
+                .features = ScaleFeatures(_model, _options, _unit),
+                .evaluator = _options.evaluator};
     }
 
     int FirstLevel() const { return std::min(1, _options.levels); }
@@ -295,6 +297,9 @@ private:
                                _job);
         _job.CheckStopped();
         AddSolve(_cascade.Step(_rows, CountIterations(), Times(1.0 / _widthUnit, given)));
+        if (!_options.keepsSweeps) return;
+        auto const matrices = eval::MakeSweepMatrices(_rows, _cascade.GetOperator());
+        _sweeps.push_back({_level, eval::ToPublicOrder(_rows, matrices)});
     }
 
     void AddSolve(eval::CascadeStepReport const& solve) {
@@ -382,12 +387,13 @@ private:
     bool _isSettling = false;
     size_t _shown = 0;  // of the level's effort
     SmoothReport _report;
+    std::vector<LevelSweep> _sweeps;
 };
 
 SmoothResult RunOnce(Model const& model, ScaledWidths const& widths, SmoothOptions const& options,
                      bool isAgain, Job& job) {
-    bool const isSingle =
-        options.precision == Precision::Float && options.solver == eval::CascadeSolver::Jacobi;
+    bool const isSingle = options.precision == Precision::Float &&
+                          options.solver == eval::CascadeSolver::Jacobi && !options.evaluator;
     return isSingle ? SmoothRun<float>(model, widths, options, isAgain, job).Run()
                     : SmoothRun<double>(model, widths, options, isAgain, job).Run();
 }

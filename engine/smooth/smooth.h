@@ -11,6 +11,7 @@
 #include "engine/smooth/smooth_levels.h"
 #include "engine/smooth/widths.h"
 #include "eval/cascade/cascade.h"
+#include "eval/cascade/sweep_matrices.h"
 
 namespace limn::engine {
 
@@ -75,6 +76,9 @@ struct SmoothOptions {
     OnCollapse onCollapse = OnCollapse::Stop;
     bool keepsCreases = false;
     Precision precision = Precision::Double;  ///< of Jacobi sweeps
+    /// Applies interpolation and Jacobi sweeps as tables in float; null: none.
+    eval::TableEvaluator* evaluator = nullptr;
+    bool keepsSweeps = false;  ///< in the result, of Jacobi; with a solve per level only
     /// The file that the mesh is for: its coordinates are rounded to what that will hold. None:
     /// they stay doubles.
     std::optional<MeshTarget> target{};
@@ -130,11 +134,18 @@ struct SmoothReport {
     bool HasConverged() const;  ///< and not collapsed
 };
 
+/// A sweep of a level, over the vertices that its refinement has.
+struct LevelSweep {
+    int level = 0;
+    eval::SweepMatrices matrices;
+};
+
 struct SmoothResult {
     /// Without creases and corners unless they were kept; primvar `width` is the filter width at
     /// each vertex. None where a component collapsed, unless results are to be kept.
     std::optional<Scene> mesh;
     SmoothReport report;
+    std::vector<LevelSweep> sweeps;  ///< where they were to be kept
 };
 
 /// Refuses options that do not go together. \throws Error  BadOption: both named

@@ -93,6 +93,14 @@ void CheckOptions(SmoothOptions const& options) {
     refuse(options.order != 2 && options.order != 4,
            fmt::format("`order`: {} is neither 2 nor 4", options.order));
     refuse(options.steps < 1, fmt::format("`steps`: {} is not 1 or more", options.steps));
+    refuse(options.evaluator && !isJacobi,
+           "`evaluator` needs `solver` jacobi; what cg and exact apply is no fixed table");
+    if (options.keepsSweeps) {
+        refuse(!isJacobi, "`keepsSweeps` needs `solver` jacobi; cg and exact do not sweep");
+        refuse(options.steps != 1, "`keepsSweeps` and `steps` exclude each other: a pair a level");
+        refuse(options.settle.has_value(),
+               "`keepsSweeps` and `settle` exclude each other: a pair a level");
+    }
     if (options.order == 4) {
         refuse(options.levels != 0, "`order` 4 needs `levels` 0");
         refuse(isJacobi, "`order` 4 is not for `solver` jacobi; cg and exact solve it");

@@ -8,7 +8,7 @@
 
 #include "engine/scene/refine.h"
 #include "engine/scene/scene_checks.h"
-#include "eval/differential/refine_values.h"
+#include "eval/differential/value_refiner.h"
 #include "far_ext/error.h"
 #include "far_ext/topology/refined_cage.h"
 
@@ -144,8 +144,13 @@ std::vector<double> SmoothLevels::FindCornerUVs() {
     return corners;
 }
 
+Scene SmoothLevels::MakeQuarteredScene(Job& job) const {
+    eval::ValueRefiner values(*_refiner, nullptr);
+    return RefineAllButPositions(_model, values, job);
+}
+
 Scene SmoothLevels::MakeScene(Job& job) const {
-    Scene fine = _bisection ? MakeBisectedScene() : RefineAllButPositions(_model, *_refiner, job);
+    Scene fine = _bisection ? MakeBisectedScene() : MakeQuarteredScene(job);
     if (!_keepsCreases) {
         fine.cage.creaseVertexPairs.clear();
         fine.cage.creaseSharpness.clear();

@@ -60,6 +60,7 @@ private:
     void DropTags();
     far_ext::CascadeMesh const& TakeBisected(far_ext::CascadeMesh const& fine);
     Scene MakeBisectedScene() const;
+    Scene MakeQuarteredScene(Job& job) const;
 
     Model const& _model;
     bool _keepsCreases;

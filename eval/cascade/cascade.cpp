@@ -40,7 +40,7 @@ constexpr double kLeastAreaLeft =
     1e-12;  // of the start mesh': what is smaller has a shape of rounding
 
 template <class Scalar>
-CascadeRows<Scalar> Prolong(CascadeLevel const& level, CascadeRows<Scalar> const& coarse) {
+CascadeRows<Scalar> FindMeans(CascadeLevel const& level, CascadeRows<Scalar> const& coarse) {
     CascadeRows<Scalar> fine(level.vertices.size());
     ForEachRow(level.GetNumRows(), [&](Index row) {
         int const begin = level.parentOffsets[row], end = level.parentOffsets[row + 1];
@@ -96,6 +96,13 @@ Cascade<Scalar>::Cascade(std::span<double const> positions, std::span<double con
         throw Error(ErrorCode::BadOption,
                     "Cascade: Jacobi sweeps are of order 2 and keep no features");
     }
+    if (options.evaluator) {
+        if (std::is_same_v<Scalar, float> || options.solver != CascadeSolver::Jacobi) {
+            throw Error(ErrorCode::BadOption,
+                        "Cascade: an evaluator is for Jacobi sweeps of a cascade in double");
+        }
+        _tables.emplace(*options.evaluator);
+    }
     CheckLengths<Scalar>(positions, "a coordinate");
     CheckLengths<Scalar>(isLocal ? widths : std::span(&options.width, 1), "a width");
     for (size_t i = 0; i < positions.size() / 3; ++i) {
@@ -117,14 +124,24 @@ bool Cascade<Scalar>::IsDegenerate(MetricQuality const& quality) const {
              quality.area >= kLeastAreaLeft * _startArea);
 }
 
+/// From the coarser level to this one.
+template <class Scalar>
+CascadeRows<Scalar> Cascade<Scalar>::Prolong(CascadeRows<Scalar> const& coarse) const {
+    if constexpr (std::is_same_v<Scalar, double>) {
+        if (_tables) return _tables->Prolong(coarse);
+    }
+    return FindMeans(*_level, coarse);
+}
+
 template <class Scalar>
 CascadeStepReport Cascade<Scalar>::Step(CascadeLevel const& level, int iterations,
                                         std::span<double const> givenWidths) {
     _level = &level;
-    _x0 = Prolong(level, _x0);
-    _x = Prolong(level, _x);
-    if (_options.isGraph) _plane = Prolong(level, _plane);
-    if (_isFrozen) _metric = Prolong(level, _metric);
+    if (_tables) _tables->SetLevel(level, static_cast<Index>(_x.size()));
+    _x0 = Prolong(_x0);
+    _x = Prolong(_x);
+    if (_options.isGraph) _plane = Prolong(_plane);
+    if (_isFrozen) _metric = Prolong(_metric);
     _hasGivenWidths = !givenWidths.empty();
     for (size_t row = 0; _hasGivenWidths && row < _x.size(); ++row) {
         _x[row][3] = _x0[row][3] = static_cast<Scalar>(givenWidths[level.vertices[row]]);
@@ -166,7 +183,7 @@ CascadeStepReport Cascade<Scalar>::Solve(int iterations) {
         _isFrozen = true;
         if (_metric.empty()) _metric = present;  // there is no coarser level
         if (_metric.size() != _x.size())
-            _metric = Prolong(level, _metric);  // it is still the coarser level's
+            _metric = Prolong(_metric);  // it is still the coarser level's
     }
     report.isMetricFrozen = _isFrozen;
     if (_isFrozen) {
@@ -196,8 +213,9 @@ CascadeStepReport Cascade<Scalar>::Solve(int iterations) {
 template <class Scalar>
 void Cascade<Scalar>::BuildEquation(CascadeRows<Scalar> const& metric, int iterations) {
     _operator.order = _options.order;
-    if (!_options.features) return;
     if constexpr (std::is_same_v<Scalar, double>) {
+        if (_tables) _tables->SetOperator(*_level, _operator);
+        if (!_options.features) return;
         auto const& [lambda, normalsWidth] = *_options.features;
         CascadeOperator<double> plain;
         BuildOperator(*_level, metric, normalsWidth, plain);
@@ -225,6 +243,11 @@ CascadeSolve Cascade<Scalar>::SolveRows(CascadeOperator<Scalar> const& op,
 template <class Scalar>
 void Cascade<Scalar>::Sweep(int iterations) {
     CascadeLevel const& level = *_level;
+    if (_tables) {
+        if (!_isFrozen) _metric = _options.isGraph ? _plane : _x;
+        ReturnUnmovedRows(level, _operator, _x0, _x);
+        return SweepByTables(_x0, _x, iterations);
+    }
     CascadeRows<Scalar> const* from = &_x;
     if (!_isFrozen && !_options.isGraph && iterations > 0 &&
         !IsAnyElsewhere(level, _operator, _x0, _x)) {
@@ -240,6 +263,15 @@ void Cascade<Scalar>::Sweep(int iterations) {
         std::copy(_x0.begin() + level.numUnknowns, _x0.end(), rows->begin() + level.numUnknowns);
     }
     SweepInParts(*from, _x0, _next, _x, iterations);
+}
+
+template <class Scalar>
+void Cascade<Scalar>::SweepByTables(CascadeRows<Scalar> const& x0, CascadeRows<Scalar>& x,
+                                    int iterations) const {
+    if constexpr (std::is_same_v<Scalar, double>) {
+        _tables->Sweep(x0, x, iterations, _options.progress);
+        ReturnUnmovedRows(*_level, _operator, x0, x);  // which were rounded
+    }
 }
 
 /// From `from` to x, with `next` as the other buffer; so many at once that telling of them costs
@@ -306,7 +338,9 @@ template <class Scalar>
 std::vector<double> Cascade<Scalar>::Filter(std::span<double const> values, int iterations) const {
     CascadeRows<Scalar> const y0 = MakeRows(values);
     CascadeRows<Scalar> y = y0;
-    if (_options.solver == CascadeSolver::Jacobi) {
+    if (_tables) {
+        SweepByTables(y0, y, iterations);
+    } else if (_options.solver == CascadeSolver::Jacobi) {
         CascadeRows<Scalar> next = y0;
         SweepInParts(y0, y0, next, y, iterations);
     } else {

@@ -9,6 +9,7 @@
 #include "eval/cascade/cascade_operator.h"
 #include "eval/cascade/cascade_solve.h"
 #include "eval/cascade/cascade_sweep.h"
+#include "eval/cascade/cascade_tables.h"
 
 namespace limn::eval {
 
@@ -31,6 +32,8 @@ struct CascadeOptions {
     bool measuresResidual = true;            ///< of Jacobi sweeps, at the cost of about one
     int order = 2;  ///< 4: (M + L M^-1 L) X = M X0, with L X = 0 on rows that stay; not by Jacobi
     std::optional<KeptFeatures> features{};  ///< on triangles, not by Jacobi
+    TableEvaluator* evaluator = nullptr;  ///< of Jacobi sweeps and interpolation: these are rounded
+                                          ///< to float, all else is in double. Outlives the cascade
 };
 
 /// What a step did.
@@ -52,8 +55,8 @@ struct CascadeStepReport {
 ///          mesh's), the level and all finer ones keep that of the level before, interpolated.
 /// Widths   of vertices are filtered like positions, but 0 stays 0: where none was painted, nothing
 ///          ever moves.
-/// Scalar   float: Jacobi only. All sums and solves have the same bits whatever the threads.
-/// Source   [Diewald02] Sec. 5 to 8
+/// Scalar   float: Jacobi only, without an evaluator. All sums and solves have the same bits
+/// whatever the threads. Source   [Diewald02] Sec. 5 to 8
 template <class Scalar>
 class Cascade {
 public:
@@ -101,10 +104,12 @@ public:
 
 private:
     CascadeStepReport Solve(int iterations);
+    CascadeRows<Scalar> Prolong(CascadeRows<Scalar> const& coarse) const;
     void BuildEquation(CascadeRows<Scalar> const& metric, int iterations);
     CascadeSolve SolveRows(CascadeOperator<Scalar> const& op, CascadeRows<Scalar> const& x0,
                            CascadeRows<Scalar>& x, int iterations) const;
     void Sweep(int iterations);
+    void SweepByTables(CascadeRows<Scalar> const& x0, CascadeRows<Scalar>& x, int iterations) const;
     void SweepInParts(CascadeRows<Scalar> const& from, CascadeRows<Scalar> const& x0,
                       CascadeRows<Scalar>& next, CascadeRows<Scalar>& x, int iterations) const;
     /// The vertex of a row; before the first level rows are in the public order.
@@ -121,6 +126,7 @@ private:
     CascadeRows<Scalar> _next;    // the other buffer of sweeps
     CascadeRows<Scalar> _plane;   // of a graph: x and y
     CascadeOperator<Scalar> _operator;
+    std::optional<CascadeTables> _tables;  // of an evaluator
     bool _isFrozen = false, _hasGivenWidths = false;
     double _leastAngle = -1.0, _leastAreaRatio = 0.0, _startArea = 0.0;
 };

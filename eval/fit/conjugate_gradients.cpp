@@ -81,19 +81,35 @@ private:
         });
     }
 
-    /// q = A p and <p, q>.
-    Sums<Length> Apply() {
-        auto const partials = MapBlocks(_count, kRowsPerSum, [&](Index begin, Index end) {
-            Sums<Length> sum{};
+    /// q = A p, for rows begin to end, and their part of <p, q>.
+    Sums<Length> ApplyRows(Index begin, Index end) {
+        Sums<Length> sum{};
+        auto const add = [&](auto const& c, Row const& own, Row const& product) {
+            for (size_t i = 0; i < Length; ++i)
+                sum[i] += c.scale * own.values[i] * product.values[i];
+        };
+        if (!_problem.table) {
             _problem.A.ForEachRow<Row>(
                 begin, end, Stage::Rest, _p.data(),
                 [&](Index row, auto const& c, Row const& own, Row const& product) {
                     product.Store(_q.data(), row);
-                    for (size_t i = 0; i < Length; ++i)
-                        sum[i] += c.scale * own.values[i] * product.values[i];
+                    add(c, own, product);
                 });
             return sum;
-        });
+        }
+        for (Index row = begin; row < end; ++row) {
+            auto const& c = _problem.A.GetClass(row);
+            if (c.stage == Stage::Rest)
+                add(c, Row::Load(_p.data(), row), Row::Load(_q.data(), row));
+        }
+        return sum;
+    }
+
+    /// q = A p and <p, q>.
+    Sums<Length> Apply() {
+        if (_problem.table) _problem.table->Apply(_p, Length, _q);
+        auto const partials = MapBlocks(
+            _count, kRowsPerSum, [&](Index begin, Index end) { return ApplyRows(begin, end); });
         Sums<Length> total{};
         for (auto const& partial : partials) {
             for (size_t i = 0; i < Length; ++i) total[i] += partial[i];

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "eval/fit/decompose.h"
+#include "eval/fit/limit_application.h"
 #include "eval/parallel/rows.h"
 #include "far_ext/error.h"
 #include "far_ext/rows/large_array.h"
@@ -146,6 +148,18 @@ std::vector<double> Interpolator::FindLimits(std::span<double const> values, int
     return result;
 }
 
+FixedTable Interpolator::MakeTable(TableEvaluator& evaluator) const {
+    far_ext::StencilRows rows(_operator.GetNumVertices(), 1);
+    for (Index row = 0; row < _operator.GetNumVertices(); ++row) {
+        _operator.ForEachEntry(row, [&](Index column, double weight) {
+            auto const rounded = static_cast<float>(weight);
+            rows.AddEntry(column, &rounded);
+        });
+        rows.EndRow();
+    }
+    return evaluator.Make(LimitApplication::kTable, std::move(rows));
+}
+
 SolveReport Interpolator::Solve(std::span<double const> M, int length, std::span<double> P,
                                 InterpolateOptions const& options) const {
     Validate(_operator, M, length, P, options);
@@ -166,7 +180,8 @@ SolveReport Interpolator::Solve(std::span<double const> M, int length, std::span
                              size,
                              options.tolerance,
                              options.maxIterations,
-                             options.onIteration};
+                             options.onIteration,
+                             options.table};
         Join(report, SolveBlock(problem, options));
         std::copy(solution.begin(), solution.end(), data.begin());
         Scatter(data, length, first, count, _vertices, P);
@@ -276,7 +291,7 @@ SolveReport Interpolator::SolveBlock(LimitProblem& problem,
     report.history = std::move(result.history);
     report.lambdaMin = result.lambdaMin;
     report.residual = result.residual;  // found in double by what converged
-    if (!result.converged || !projected.empty())
+    if (!result.converged || !projected.empty() || problem.table)
         report.residual = FindResidual(problem, &report.worstVertex);
     report.converged = report.residual <= options.tolerance;
     return report;

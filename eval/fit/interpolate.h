@@ -35,6 +35,7 @@ struct InterpolateOptions {
     double lambdaMin =
         0.0;  ///< a lower bound of A's eigenvalues if one is known; 0: limn finds its own
     OnIteration onIteration{};
+    FixedTable const* table = nullptr;  ///< of MakeTable: what iterations apply, in float
 };
 
 /// A component on which A is singular (see SingularComponents).
@@ -80,6 +81,10 @@ public:
 
     /// Limits of all vertices: A times rows of `length` numbers, one per vertex.
     std::vector<double> FindLimits(std::span<double const> values, int length) const;
+
+    /// A as a table of an evaluator, named LimitApplication::kTable, its rows in the order of
+    /// GetVertices.
+    FixedTable MakeTable(TableEvaluator& evaluator) const;
 
     /// \param M       rows of `length` numbers, any length
     /// \param P       receives the solution; must not overlap M

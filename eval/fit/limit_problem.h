@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "eval/fit/limit_operator.h"
+#include "eval/stencils/table_evaluator.h"
 
 namespace limn::eval {
 
@@ -22,6 +23,8 @@ struct LimitProblem {
     double tolerance = 1e-6;  ///< of max |M - A P|, in the unit `size`; a row's length counts
     int maxApplications = 1000;
     OnIteration onIteration{};
+    FixedTable const* table = nullptr;  ///< A in float: iterations apply it to their steps, while
+                                        ///< residuals stay in double
 
     /// The row of a vertex, in the data and in the solution.
     double const* GetData(Index vertex) const { return data + GetOffset(vertex); }
@@ -58,11 +61,18 @@ enum class StationaryMethod {
     Chebyshev     ///< a and b of the Chebyshev polynomials on [lambda, 1]
 };
 
+/// With a table RunByTable does it.
+///
 /// \param lambda  lower bound of the eigenvalues, in (0, 1). Chebyshev lowers it by itself where
 ///                convergence shows that it was too high, and is stuck where that would pass
 ///                `smallest`
 IterationResult RunStationary(LimitProblem const& problem, StationaryMethod method, double lambda,
                               double smallest = 1e-6);
+
+/// The same fixed-point iteration on residuals, with the problem's table. All but what it applies
+/// is in double.
+IterationResult RunByTable(LimitProblem const& problem, StationaryMethod method, double lambda,
+                           double smallest = 1e-6);
 
 /// Conjugate gradients in the inner product of D, each channel with its own step lengths.
 ///

@@ -204,7 +204,9 @@ private:
                 last = residual;
             }
             if (isDone) return;
-            if (_method == StationaryMethod::Chebyshev && _watch.IsReady() && !LowerBound()) return;
+            if (_method != StationaryMethod::Chebyshev || !_watch.IsReady()) continue;
+            _result.isStuck = !LowerBound(_schedule, _watch, _smallest);
+            if (_result.isStuck) return;
         }
     }
 
@@ -216,23 +218,6 @@ private:
         double const needed =
             rate > 0.0 && rate < 1.0 ? std::log(goal / last) / std::log(rate) : 1.0;
         return needed > 1.0 ? std::min(most, static_cast<int>(std::min(needed, 100.0))) : 1;
-    }
-
-    /// Lowers the bound where modes below it hold convergence up. Returns false where that goes too
-    /// far.
-    bool LowerBound() {
-        double const rate = _watch.GetRate();
-        if (rate < std::sqrt(_schedule.GetExpectedRate()))
-            return true;  // half as fast as hoped is still well
-        // The slowest mode's eigenvalue, and some room: an underestimate costs little, an
-        // overestimate much.
-        double const bound =
-            std::min(0.8 * _schedule.FindEigenvalue(rate), 0.8 * _schedule.GetLambda());
-        _result.isStuck = !(bound > _smallest);
-        if (_result.isStuck) return false;
-        _schedule.Restart(bound);
-        _watch.Restart();
-        return true;
     }
 
     void AddCorrection() {
@@ -256,6 +241,7 @@ private:
 
 IterationResult RunStationary(LimitProblem const& problem, StationaryMethod method, double lambda,
                               double smallest) {
+    if (problem.table) return RunByTable(problem, method, lambda, smallest);
     IterationResult result;
     WithLength(problem.length, [&]<int Length>() {
         result = StationarySolve<Length>(problem, method, lambda, smallest).Run();

@@ -78,4 +78,19 @@ private:
     std::vector<double> _residuals;
 };
 
+/// Lowers a schedule's bound where modes below it hold convergence up.
+///
+/// \return  false where that would go below `smallest`
+inline bool LowerBound(StepSchedule& schedule, RateWatch& watch, double smallest) {
+    double const rate = watch.GetRate();
+    if (rate < std::sqrt(schedule.GetExpectedRate())) return true;  // half as fast as hoped is well
+    // The slowest mode's eigenvalue, and some room: an underestimate costs little, an overestimate
+    // much.
+    double const bound = std::min(0.8 * schedule.FindEigenvalue(rate), 0.8 * schedule.GetLambda());
+    if (!(bound > smallest)) return false;
+    schedule.Restart(bound);
+    watch.Restart();
+    return true;
+}
+
 }  // namespace limn::eval

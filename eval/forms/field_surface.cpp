@@ -3,9 +3,7 @@
 
 #include <algorithm>
 
-#include <tbb/parallel_for.h>
-
-#include "eval/differential/refine_values.h"
+#include "eval/differential/value_refiner.h"
 #include "eval/forms/vertex_covectors.h"
 #include "eval/surface/surface_sample.h"
 #include "far_ext/error.h"
@@ -18,7 +16,7 @@
 namespace limn::eval {
 
 FieldSurface::FieldSurface(far_ext::ControlMesh const& cage, std::span<double const> positions,
-                           std::span<double const> form, int levels)
+                           std::span<double const> form, int levels, TableEvaluator* evaluator)
     : _positions(positions.begin(), positions.end()), _form(form.begin(), form.end()) {
     if (!far_ext::HasRefinedFaces(cage)) levels = std::max(levels, 1);
     double const corners = static_cast<double>(cage.faceVertices.size()) * std::pow(4.0, levels);
@@ -36,11 +34,13 @@ FieldSurface::FieldSurface(far_ext::ControlMesh const& cage, std::span<double co
         options.fullTopologyInLastLevel = true;
         base->RefineUniform(options);
     }
+    ValueRefiner values(*base, evaluator);
     for (int level = 1; level <= levels; ++level) {
-        _positions = RefineValues<3>(*base, level, _positions);
-        _form = far_ext::BuildFormStencils(*base, level).s1.Apply(_form);
+        _positions = values.Refine<3>(level, _positions);
+        _form = ApplyRows(evaluator, far_ext::FormStencils::kS1,
+                          far_ext::BuildFormStencils(*base, level).s1, _form);
     }
-    FindVectors(*base);
+    FindVectors(*base, evaluator);
 
     // The refined cage's own edges have other numbers.
     _cage = levels > 0 ? far_ext::MakeRefinedCage(*base, cage) : cage;
@@ -57,7 +57,7 @@ FieldSurface::FieldSurface(far_ext::ControlMesh const& cage, std::span<double co
 }
 
 /// At the corners of faces that are not regular.
-void FieldSurface::FindVectors(Far::TopologyRefiner const& refiner) {
+void FieldSurface::FindVectors(Far::TopologyRefiner const& refiner, TableEvaluator* evaluator) {
     auto const level = refiner.GetLevel(refiner.GetMaxLevel());
     int const valence = refiner.GetSchemeType() == Sdc::SCHEME_LOOP ? 6 : 4;
     std::vector<char> isNeeded(level.GetNumVertices(), 0);
@@ -70,11 +70,13 @@ void FieldSurface::FindVectors(Far::TopologyRefiner const& refiner) {
         for (Index vertex : corners) isNeeded[vertex] |= !isRegular;
     }
     _vectors.assign(isNeeded.size(), Eigen::Vector3d::Zero());
-    VertexCovectors const covectors(refiner, refiner.GetMaxLevel());
-    tbb::parallel_for(Index(0), level.GetNumVertices(), [&](Index vertex) {
-        if (isNeeded[vertex])
-            _vectors[vertex] = covectors.Find(vertex, _form, _positions).GetVector();
-    });
+    std::vector<Index> needed;
+    for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
+        if (isNeeded[vertex]) needed.push_back(vertex);
+    }
+    auto const covectors = VertexCovectors(refiner, refiner.GetMaxLevel())
+                               .FindAll(needed, _form, _positions, evaluator);
+    for (size_t i = 0; i < needed.size(); ++i) _vectors[needed[i]] = covectors[i].GetVector();
 }
 
 FieldSurface::Sampler::Sampler(FieldSurface const& field)

@@ -9,6 +9,7 @@
 
 #include "eval/forms/quad_form_patch.h"
 #include "eval/forms/triangle_form_patch.h"
+#include "eval/stencils/table_evaluator.h"
 #include "eval/surface/face_tree.h"
 #include "eval/surface/refined_faces.h"
 #include "far_ext/topology/control_mesh.h"
@@ -30,10 +31,12 @@ public:
     /// \param form       per edge of the cage
     /// \param levels     refinements; 1 is done at least where faces are not all quads (Loop:
     ///                   triangles)
+    /// \param evaluator  null: all in double; else applies refinement and vectors at vertices as
+    ///                   tables, in float
     /// \throws Error     as far_ext::CheckForms; TooLarge: 2^31 indices; BadOption: arrays that do
     ///                   not reach all vertices or edges
     FieldSurface(far_ext::ControlMesh const& cage, std::span<double const> positions,
-                 std::span<double const> form, int levels);
+                 std::span<double const> form, int levels, TableEvaluator* evaluator = nullptr);
 
     /// The refined cage, whose limit is the cage's, with what lies on it; edges have the numbers of
     /// the surface's refiner.
@@ -81,7 +84,7 @@ public:
     };
 
 private:
-    void FindVectors(Far::TopologyRefiner const& refiner);
+    void FindVectors(Far::TopologyRefiner const& refiner, TableEvaluator* evaluator);
 
     far_ext::ControlMesh _cage;  // refined
     std::vector<double> _positions, _form;

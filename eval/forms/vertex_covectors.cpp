@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include "far_ext/error.h"
 #include "far_ext/forms/find_wheel.h"
@@ -326,14 +327,45 @@ VertexCovector VertexCovectors::Find(Index vertex, std::span<double const> form,
     return result;
 }
 
+VertexCovectors::ValueRows VertexCovectors::FindValueRows(Index vertex,
+                                                          std::span<double const> positions) const {
+    Check(vertex, positions);
+    ValueRows rows;
+    rows.tangents = Walk(vertex, positions, [&](size_t a, Index edge, double weight) {
+        rows.values[a].Add(edge, weight);
+    });
+    return rows;
+}
+
+std::vector<VertexCovector> VertexCovectors::FindAll(std::span<Index const> vertices,
+                                                     std::span<double const> form,
+                                                     std::span<double const> positions,
+                                                     TableEvaluator* evaluator) const {
+    std::vector<VertexCovector> covectors(vertices.size());
+    if (!evaluator) {
+        tbb::parallel_for(size_t(0), vertices.size(),
+                          [&](size_t i) { covectors[i] = Find(vertices[i], form, positions); });
+        return covectors;
+    }
+    far_ext::CheckLength("form", form, _level.GetNumEdges(), "edges", 1);
+    std::vector<ValueRows> rows(vertices.size());
+    tbb::parallel_for(size_t(0), vertices.size(),
+                      [&](size_t i) { rows[i] = FindValueRows(vertices[i], positions); });
+    far_ext::SparseRows table;
+    for (ValueRows const& row : rows) {
+        for (far_ext::WeightRow const& value : row.values) table.AddRow(value);
+    }
+    std::vector<double> values(2 * vertices.size());
+    evaluator->Make(kTable, table, _level.GetNumEdges()).Apply(form, 1, values);
+    for (size_t i = 0; i < covectors.size(); ++i)
+        covectors[i] = {rows[i].tangents, {values[2 * i], values[2 * i + 1]}};
+    return covectors;
+}
+
 std::array<far_ext::WeightRow, 3> VertexCovectors::FindVectorRows(
     Index vertex, std::span<double const> positions) const {
-    Check(vertex, positions);
-    VertexCovector covector;
-    std::array<far_ext::WeightRow, 2> values;
-    covector.tangents = Walk(vertex, positions, [&](size_t a, Index edge, double weight) {
-        values[a].Add(edge, weight);
-    });
+    auto const [tangents, values] = FindValueRows(vertex, positions);
+    VertexCovector covector{tangents};
     std::array<far_ext::WeightRow, 3> rows;
     for (size_t a = 0; a < 2; ++a) {  // V is linear in both values
         covector.values = {};

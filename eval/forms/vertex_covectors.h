@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <opensubdiv/far/topologyRefiner.h>
 
+#include "eval/stencils/table_evaluator.h"
 #include "far_ext/forms/form_wheel.h"
 #include "far_ext/rows/sparse_rows.h"
 
@@ -50,11 +51,28 @@ public:
     VertexCovector Find(Index vertex, std::span<double const> form,
                         std::span<double const> positions) const;
 
+    /// At each of many vertices, on all threads.
+    ///
+    /// \param evaluator  null: in double; else applies their values as a table, in float
+    std::vector<VertexCovector> FindAll(std::span<Index const> vertices,
+                                        std::span<double const> form,
+                                        std::span<double const> positions,
+                                        TableEvaluator* evaluator = nullptr) const;
+
     /// The vector at a vertex as weights over the edges of the level: x, y and z.
     std::array<far_ext::WeightRow, 3> FindVectorRows(Index vertex,
                                                      std::span<double const> positions) const;
 
+    /// The name of FindAll's table among those that an evaluator counts.
+    static constexpr char const* kTable = "covectors";
+
 private:
+    /// The tangents at a vertex, and w(T_a) as weights over the edges of the level.
+    struct ValueRows {
+        std::array<Eigen::Vector3d, 2> tangents;
+        std::array<far_ext::WeightRow, 2> values;
+    };
+
     /// The weights behind T and w(T) at a vertex.
     struct Row {
         double vertex = 0.0;
@@ -65,6 +83,7 @@ private:
     class RowMaker;
 
     static Rows MakeRows(Sdc::SchemeType scheme, far_ext::Wheel const& wheel);
+    ValueRows FindValueRows(Index vertex, std::span<double const> positions) const;
     void Check(Index vertex, std::span<double const> positions) const;
     template <class AddEdge>
     std::array<Eigen::Vector3d, 2> Walk(Index vertex, std::span<double const> positions,

@@ -3,11 +3,20 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+#include <utility>
 
 #include <opensubdiv/osd/cpuEvaluator.h>
-#include <opensubdiv/osd/ompEvaluator.h>
 
 #include "eval/parallel/rows.h"
+#include "far_ext/error.h"
+
+#if __has_include(<opensubdiv/osd/ompEvaluator.h>)  // not installed by a build without OpenMP
+#include <opensubdiv/osd/ompEvaluator.h>
+#define LIMN_HAS_OMP_EVALUATOR true
+#else
+#define LIMN_HAS_OMP_EVALUATOR false
+#endif
 
 namespace limn::eval {
 
@@ -49,9 +58,26 @@ void EvaluateRange(float const* source, BufferDescriptor const& sourceDesc, Targ
     }
 }
 
+#if LIMN_HAS_OMP_EVALUATOR
+using OmpEvaluator = Osd::OmpEvaluator;
+#else
+using OmpEvaluator = Osd::CpuEvaluator;  // which nobody comes to
+#endif
+
+void RequireBuiltIn(EvaluatorKind kind) {
+    if (IsBuiltIn(kind)) return;
+    throw Error(ErrorCode::BadOption, std::string("evaluator ") + GetName(kind) +
+                                          ": this OpenSubdiv was built without OpenMP");
+}
+
 }  // namespace
 
+bool IsBuiltIn(EvaluatorKind kind) {
+    return kind != EvaluatorKind::OsdOmp || LIMN_HAS_OMP_EVALUATOR;
+}
+
 StencilEvaluator::StencilEvaluator(EvaluatorKind kind, far_ext::StencilGroups table) : _kind(kind) {
+    RequireBuiltIn(kind);
     if (kind == EvaluatorKind::Simd)
         _simd.emplace(std::move(table));
     else
@@ -59,6 +85,7 @@ StencilEvaluator::StencilEvaluator(EvaluatorKind kind, far_ext::StencilGroups ta
 }
 
 StencilEvaluator::StencilEvaluator(EvaluatorKind kind, far_ext::StencilRows table) : _kind(kind) {
+    RequireBuiltIn(kind);
     far_ext::Validate(table.GetView());
     if (kind == EvaluatorKind::Simd)
         _simd.emplace(far_ext::GroupRows(table.GetView()));
@@ -76,7 +103,7 @@ void StencilEvaluator::EvalStencils(float const* source, BufferDescriptor const&
     far_ext::StencilRowsView const rows = _rows->GetView();
     SimdEvaluator::Check(source, sourceDesc, targets, rows.numSets, rows.numRows, start, end);
     if (_kind == EvaluatorKind::OsdOmp) {
-        EvaluateRange<Osd::OmpEvaluator>(source, sourceDesc, targets, rows, start, end);
+        EvaluateRange<OmpEvaluator>(source, sourceDesc, targets, rows, start, end);
         return;
     }
     constexpr Index kRowsPerTask = 4096;

@@ -27,12 +27,16 @@ constexpr char const* GetName(EvaluatorKind kind) {
     return kEvaluatorWords.GetWord(kind);
 }
 
+/// Whether it is there: OsdOmp only where OpenSubdiv was built with OpenMP.
+bool IsBuiltIn(EvaluatorKind kind);
+
 /// A stencil table and what applies it, chosen at run time.
 class StencilEvaluator {
 public:
+    /// \throws Error  BadOption: an evaluator that is not built in
     StencilEvaluator(EvaluatorKind kind, far_ext::StencilGroups table);
 
-    /// \throws Error  as far_ext::Validate
+    /// \throws Error  the same; as far_ext::Validate
     StencilEvaluator(EvaluatorKind kind, far_ext::StencilRows table);
 
     /// Stencils start..end-1 into rows start..end-1 of each of 1, 3 or 6 targets, in the order of

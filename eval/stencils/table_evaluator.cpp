@@ -114,4 +114,12 @@ void TableEvaluator::Count(size_t use, double seconds) {
     _uses[use].seconds += seconds;
 }
 
+std::vector<double> ApplyRows(TableEvaluator* evaluator, std::string const& what,
+                              far_ext::SparseRows const& rows, std::vector<double> const& x) {
+    if (!evaluator) return rows.Apply(x);
+    std::vector<double> y(static_cast<size_t>(rows.GetNumRows()));
+    evaluator->Make(what, rows, static_cast<Index>(x.size())).Apply(x, 1, y);
+    return y;
+}
+
 }  // namespace limn::eval

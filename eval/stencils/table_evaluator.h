@@ -84,4 +84,11 @@ private:
     std::vector<TableUse> _uses;
 };
 
+/// rows x, one number per row, in double; or once through an evaluator.
+///
+/// \param evaluator  null: none. \param what  as TableEvaluator::Make
+/// \throws Error     as TableEvaluator::Make, FixedTable::Apply
+std::vector<double> ApplyRows(TableEvaluator* evaluator, std::string const& what,
+                              far_ext::SparseRows const& rows, std::vector<double> const& x);
+
 }  // namespace limn::eval

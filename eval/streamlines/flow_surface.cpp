@@ -27,10 +27,10 @@ int ChooseDetail(Index numFaces) {
 }  // namespace
 
 FlowSurface::FlowSurface(far_ext::ControlMesh const& cage, std::span<double const> positions,
-                         std::span<double const> form)
-    : _faces(cage, positions, form, 0),
+                         std::span<double const> form, TableEvaluator* evaluator)
+    : _faces(cage, positions, form, 0, evaluator),
       _near(_faces.GetRefinedCage(), _faces.GetPositions(), _faces.GetForm(),
-            ChooseDetail(_faces.GetSurface().GetNumFaces())) {}
+            ChooseDetail(_faces.GetSurface().GetNumFaces()), evaluator) {}
 
 void FlowSurface::Sampler::Bind(Index face) {
     if (face != _face) _faces.Bind(face);

@@ -25,9 +25,10 @@ class FlowSurface {
 public:
     /// \param positions  3 per vertex of the cage
     /// \param form       per edge of the cage
+    /// \param evaluator  as FieldSurface
     /// \throws Error     as FieldSurface
     FlowSurface(far_ext::ControlMesh const& cage, std::span<double const> positions,
-                std::span<double const> form);
+                std::span<double const> form, TableEvaluator* evaluator = nullptr);
 
     LimitSurface const& GetSurface() const { return _faces.GetSurface(); }
     Far::TopologyLevel const& GetLevel() const { return GetSurface().GetRefiner().GetLevel(0); }

@@ -7,7 +7,8 @@
 
 namespace limn::far_ext {
 
-CascadeStencils::CascadeStencils(CascadeLevel const& level) {
+template <class Weight>
+BasicCascadeStencils<Weight>::BasicCascadeStencils(CascadeLevel const& level) {
     Index const numRows = level.GetNumRows();
     size_t const numEntries = level.neighbours.size() + numRows + level.numUnknowns;
     if (numEntries > static_cast<size_t>(std::numeric_limits<int>::max()) ||
@@ -26,22 +27,28 @@ CascadeStencils::CascadeStencils(CascadeLevel const& level) {
         }
         _sizes.push_back(static_cast<int>(_indices.size()) - _offsets.back());
     }
-    _weights.assign(_indices.size(), 1.0f);  // what rows that stay have
+    _weights.assign(_indices.size(), Weight(1));  // what rows that stay have
 }
 
-void CascadeStencils::SetWeights(CascadeLevel const& level, std::span<float const> edges,
-                                 std::span<float const> masses, std::span<float const> scales) {
+template <class Weight>
+void BasicCascadeStencils<Weight>::SetWeights(CascadeLevel const& level,
+                                              std::span<Weight const> edges,
+                                              std::span<Weight const> masses,
+                                              std::span<Weight const> scales) {
     for (Index row = 0; row < level.numUnknowns; ++row) {
-        float* weight = &_weights[_offsets[row]];
-        float& own = *weight++;
-        float sum = masses[row];
+        Weight* weight = &_weights[_offsets[row]];
+        Weight& own = *weight++;
+        Weight sum = masses[row];
         for (int k = level.offsets[row]; k < level.offsets[row + 1]; ++k) {
             sum += edges[k];
             *weight++ = scales[row] * edges[k];
         }
-        own = 1.0f - scales[row] * sum;
+        own = Weight(1) - scales[row] * sum;
         *weight = scales[row] * masses[row];
     }
 }
+
+template class BasicCascadeStencils<float>;
+template class BasicCascadeStencils<double>;
 
 }  // namespace limn::far_ext

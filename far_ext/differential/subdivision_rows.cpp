@@ -13,13 +13,17 @@ namespace limn::far_ext {
 
 namespace {
 
+SparseRows Join(std::vector<WeightRow> const& rows) {
+    SparseRows joined;
+    for (WeightRow const& row : rows) joined.AddRow(row);
+    return joined;
+}
+
 SparseRows BuildSchemeRows(Far::TopologyRefiner const& refiner, int level) {
     auto const coarse = WeightRow::Identity(refiner.GetLevel(level - 1).GetNumVertices());
     std::vector<WeightRow> fine(refiner.GetLevel(level).GetNumVertices());
     Far::PrimvarRefinerReal<double>(refiner).Interpolate(level, coarse, fine);
-    SparseRows rows;
-    for (WeightRow const& row : fine) rows.AddRow(row);
-    return rows;
+    return Join(fine);
 }
 
 struct TensionRange {
@@ -69,6 +73,13 @@ SparseRows BuildSubdivisionRows(Far::TopologyRefiner const& refiner, int level,
             break;
     }
     return BuildSchemeRows(refiner, level);
+}
+
+SparseRows BuildFVarSubdivisionRows(Far::TopologyRefiner const& refiner, int level, int channel) {
+    auto const coarse = WeightRow::Identity(refiner.GetLevel(level - 1).GetNumFVarValues(channel));
+    std::vector<WeightRow> fine(refiner.GetLevel(level).GetNumFVarValues(channel));
+    Far::PrimvarRefinerReal<double>(refiner).InterpolateFaceVarying(level, coarse, fine, channel);
+    return Join(fine);
 }
 
 }  // namespace limn::far_ext

@@ -42,4 +42,8 @@ void CheckTension(TunedRule const& rule);
 SparseRows BuildSubdivisionRows(Far::TopologyRefiner const& refiner, int level,
                                 TunedRule const& rule);
 
+/// The same of the scheme's rule for a face-varying channel: values of `level` x values of `level`
+/// - 1.
+SparseRows BuildFVarSubdivisionRows(Far::TopologyRefiner const& refiner, int level, int channel);
+
 }  // namespace limn::far_ext

@@ -19,6 +19,9 @@ namespace limn::far_ext {
 /// Source   [Wang06] Sec. 3; [Forms 2]. limn's own: boundaries, creases [Forms 5], valence 3
 ///          [Forms 6].
 struct FormStencils {
+    // Their names in reports.
+    static constexpr char const *kS1 = "S1", *kS2 = "S2";
+
     SparseRows s1, s2;
 };
 

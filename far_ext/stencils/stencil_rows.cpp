@@ -23,14 +23,17 @@ void Validate(StencilRowsView const& rows) {
     auto const refuse = [](std::string const& message) {
         throw Error(ErrorCode::BadMesh, message);
     };
-    if (rows.numRows > 0 && (!rows.sizes || !rows.offsets || !rows.indices || !rows.weights[0])) {
+    auto const require = [&](bool isThere) {
+        if (isThere) return;
         refuse(
             "the stencil table lacks sizes, offsets, indices or weights (Far makes offsets with "
             "generateOffsets)");
-    }
+    };
+    require(rows.numRows == 0 || (rows.sizes && rows.offsets));
     for (Index row = 0; row < rows.numRows; ++row) {
         Index const begin = rows.offsets[row];
         int const size = rows.sizes[row];
+        require(size == 0 || (rows.indices && rows.weights[0]));
         if (begin < 0 || size < 0) {
             refuse(fmt::format("stencil {} has offset {} and size {}; neither may be negative", row,
                                begin, size));

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "support/program/cli.h"
+#include "support/values.h"
 
 namespace limn {
 namespace {
@@ -113,6 +114,54 @@ TEST_F(Matrices, S1TakesAFieldToTheRefinedOneAndS2KeepsIntegrals) {
     for (double sum : sums) EXPECT_NEAR(sum, 1.0, 1e-12);
     EXPECT_EQ(Lines(test::ReadText(folder / "S1.edges0.csv")).size(), coarse.size() + 1);
     EXPECT_EQ(Lines(test::ReadText(folder / "S1.edges2.csv")).size(), fine.size() + 1);
+}
+
+// Of a mesh as it is, which is its own start: after n sweeps, X = J (J (... X0 + load X0)) ...
+TEST_F(Matrices, ASweepsPairSmoothsTheMeshThatWasGiven) {
+    std::string const mesh = test::ScenePath("window_frame/window_frame.obj");
+    Words const words{"smooth",    mesh,       "-o",          folder / "a.obj", "--levels",
+                      "0",         "--solver", "jacobi",      "--iterations",   "3",
+                      "--width",   "0.1",      "--precision", "double",         "--write-stencils",
+                      folder / "m"};
+    ASSERT_EQ(Limn(words).status, 0);
+    Matrix const sweep = ReadMatrix(folder / "m.0.sweep.mtx"),
+                 load = ReadMatrix(folder / "m.0.load.mtx");
+    for (int axis = 0; axis < 3; ++axis) {
+        auto const start = ReadCoordinate(mesh, axis),
+                   expected = ReadCoordinate(folder / "a.obj", axis);
+        auto const ofStart = load.Apply(start);
+        auto points = start;
+        for (int i = 0; i < 3; ++i) {
+            points = sweep.Apply(points);
+            for (size_t k = 0; k < points.size(); ++k) points[k] += ofStart[k];
+        }
+        EXPECT_LT(test::LargestDifference(points, expected), 1e-12);
+        EXPECT_GT(test::LargestDifference(start, expected), 1e-3);
+    }
+}
+
+TEST_F(Matrices, OfSweepsAreWrittenForEveryLevel) {
+    ASSERT_EQ(Limn({"smooth", Shape("catmark_cube"), "-o", folder / "a.obj", "--levels", "2",
+                    "--solver", "jacobi", "--write-stencils", folder / "m"})
+                  .status,
+              0);
+    EXPECT_EQ(ReadMatrix(folder / "m.1.sweep.mtx").numRows, 26u);
+    EXPECT_EQ(ReadMatrix(folder / "m.2.load.mtx").numColumns, 98u);
+    EXPECT_EQ(folder.List().size(), 5u);
+}
+
+TEST_F(Matrices, OfSweepsNeedJacobiAndASolveALevel) {
+    Words const smooth{"smooth", Shape("catmark_cube"), "-o", folder / "a.obj"};
+    Words const written{"--write-stencils", folder / "m"};
+    ExpectError(Limn(smooth + written), 2, "--write-stencils needs --solver jacobi");
+    Words const jacobi = smooth + written + Words{"--solver", "jacobi"};
+    ExpectError(Limn(jacobi + Words{"--steps", "2"}), 2, "--write-stencils and --steps");
+    ExpectError(Limn(jacobi + Words{"--settle", "1e-3"}), 2, "--write-stencils and --settle");
+    ExpectError(Limn(smooth + Words{"--solver", "jacobi", "--write-stencils", folder / ""}), 2,
+                "--write-stencils");
+    ExpectError(Limn(smooth + Words{"--evaluator", "simd"}), 2,
+                "--evaluator needs --solver jacobi");
+    EXPECT_TRUE(folder.List().empty());
 }
 
 TEST_F(Matrices, AreRefusedUnderAnotherEndingAndWhereThereIsNothingToWrite) {

@@ -21,7 +21,10 @@ public:
         : Map(std::move(traits)),
           _numLayers(options.bandSum ? 1 : options.bands),
           _frame(options),
-          _sum(options.bandSum) {}
+          _sum(options.bandSum),
+          _evaluator(options.evaluator) {
+        if (_sum) _sum->evaluator = _evaluator;
+    }
 
     void Prepare(BakedSurface const& baked, Job& job) override {
         _values = _sum ? FindWayToSum(baked.model, job) : FindLayers(baked.model, job);
@@ -38,7 +41,7 @@ public:
 private:
     /// Per vertex bands 1, 2, ..., the remainder.
     std::vector<double> FindLayers(Model const& model, Job& job) const {
-        auto [bands, remainder] = SplitIntoBands(model, _numLayers, {}, job);
+        auto [bands, remainder] = SplitIntoBands(model, _numLayers, {}, job, _evaluator);
         bands.push_back(std::move(remainder));
         std::vector<double> values;
         for (size_t vertex = 0; vertex < model.GetPositions().size(); vertex += 3) {
@@ -78,6 +81,7 @@ private:
     int _numLayers;
     VectorFrame _frame;
     std::optional<BandSumOptions> _sum;
+    eval::TableEvaluator* _evaluator;
     std::vector<double> _values;  // per vertex a vector for each layer
 };
 
@@ -114,7 +118,7 @@ std::unique_ptr<Map> MakeBandsMap(std::string const& name, MapOptions const& opt
         }
     }
     if (traits.channels.size() == 3) traits.range = RangeKind::Vector;
-    traits.optionText = DescribeBands(options);
+    traits.optionText = DescribeBands(options) + options.DescribeEvaluator();
     VectorFrame(options).AddNeeds(traits);
     return std::make_unique<BandsMap>(std::move(traits), options);
 }

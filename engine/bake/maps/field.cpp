@@ -55,9 +55,9 @@ public:
         : Map(std::move(traits)), _options(options) {}
 
     void Prepare(BakedSurface const& baked, Job&) override {
-        _field =
-            std::make_unique<eval::FieldSurface>(baked.model.GetCage(), baked.model.GetPositions(),
-                                                 *_options.field, ChooseLevels(baked));
+        _field = std::make_unique<eval::FieldSurface>(baked.model.GetCage(),
+                                                      baked.model.GetPositions(), *_options.field,
+                                                      ChooseLevels(baked), _options.evaluator);
     }
 
     std::unique_ptr<MapSampler> MakeSampler() const override {
@@ -129,7 +129,8 @@ std::unique_ptr<Map> MakeFieldMap(std::string const& name, MapOptions const& opt
         if (!isFlow) traits.range = RangeKind::UnitVector;
     }
     traits.optionText = fmt::format("field={} flow={} normalize={}", HashNumbers(*options.field),
-                                    isFlow ? "uv" : "object", options.isNormalized);
+                                    isFlow ? "uv" : "object", options.isNormalized) +
+                        options.DescribeEvaluator();
     return std::make_unique<FieldMap>(std::move(traits), options);
 }
 

@@ -41,6 +41,14 @@ struct MapOptions {
     VectorSpace space = VectorSpace::Object;
     bool isNormalized = false;  ///< noise from 0 to 1, a field of length 1
     std::optional<Encoding> encoding;
+    /// Applies the tables of the maps noise, field and bands, in float; null: in double.
+    eval::TableEvaluator* evaluator = nullptr;
+
+    /// What an evaluator adds to the text that tells of a map's options.
+    std::string DescribeEvaluator() const {
+        if (!evaluator) return {};
+        return std::string(" evaluator=") + eval::GetName(evaluator->GetKind());
+    }
 };
 
 }  // namespace limn::engine

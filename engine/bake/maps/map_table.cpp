@@ -33,9 +33,9 @@ constexpr MapRow kMaps[] = {{"mean", MakeCurvatureMap, ""},
                             {"displacement", MakeDisplacementMap, "against isVector space"},
                             {"stretch", MakeStretchMap, ""},
                             {"tension", MakeTensionMap, "rest"},
-                            {"bands", MakeBandsMap, "bands bandSum isVector space"},
-                            {"noise", MakeNoiseMap, "noise noiseRamp isNormalized"},
-                            {"field", MakeFieldMap, "field space isNormalized"},
+                            {"bands", MakeBandsMap, "bands bandSum isVector space evaluator"},
+                            {"noise", MakeNoiseMap, "noise noiseRamp isNormalized evaluator"},
+                            {"field", MakeFieldMap, "field space isNormalized evaluator"},
                             {"overlap", MakeOverlapMap, ""},
                             {"primvar:", MakePrimvarMap, ""}};
 

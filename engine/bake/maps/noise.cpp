@@ -19,7 +19,9 @@ public:
         : Map(std::move(traits)), _options(options) {}
 
     void Prepare(BakedSurface const& baked, Job& job) override {
-        _noise = std::make_unique<SurfaceNoise>(baked.model, _options.noise, job);
+        NoiseOptions noise = _options.noise;
+        noise.evaluator = _options.evaluator;
+        _noise = std::make_unique<SurfaceNoise>(baked.model, noise, job);
     }
 
     std::unique_ptr<MapSampler> MakeSampler() const override {
@@ -85,6 +87,7 @@ std::unique_ptr<Map> MakeNoiseMap(std::string const& name, MapOptions const& opt
                                     options.noiseRamp ? options.noiseRamp->GetText() : "none");
     if (options.noise.at != NoiseAt::Limit)
         traits.optionText += fmt::format(" at={}", kNoiseAtWords.GetWord(options.noise.at));
+    traits.optionText += options.DescribeEvaluator();
     return std::make_unique<NoiseMap>(std::move(traits), options);
 }
 

@@ -6,6 +6,7 @@
 #include "engine/cli/field/field_outputs.h"
 #include "engine/cli/field/streamline_arguments.h"
 #include "engine/cli/names.h"
+#include "engine/cli/options/evaluator_option.h"
 #include "engine/cli/options/number_option.h"
 #include "engine/cli/options/option_rules.h"
 #include "engine/field/circulation.h"
@@ -29,6 +30,7 @@ struct FieldArguments {
     std::vector<double> view{1.0, 0.6, 0.8};
     std::vector<std::string> stencils;
     bool isLimit = false;
+    std::optional<eval::EvaluatorKind> evaluator;
     FieldInputs inputs;
     StreamlineArguments streamlines;
 };
@@ -75,7 +77,8 @@ void RequireLevels(FieldArguments const& a, FieldOutput output, engine::Model co
 
 void WriteField(FieldArguments const& a, FieldOutput output, engine::Model const& model,
                 engine::Field const& field, engine::MeshSequence& files,
-                std::vector<std::string>& warnings, Context& context) {
+                eval::TableEvaluator* evaluator, std::vector<std::string>& warnings,
+                Context& context) {
     Precision const precision = context.GetCommon().GetPrecision();
     if (output == FieldOutput::Mesh) {
         Precision const ofMesh = context.ChoosePrecision(a.output, field.mesh.positions);
@@ -95,7 +98,7 @@ void WriteField(FieldArguments const& a, FieldOutput output, engine::Model const
     } else {
         auto const edges = engine::ReadEdgeList(a.along, model.GetLevel());
         files.Add(a.output, FormatAlong(engine::FindCirculations(model, field.controlForm, edges,
-                                                                 context.GetJob())));
+                                                                 context.GetJob(), evaluator)));
     }
 }
 
@@ -108,7 +111,9 @@ int Run(FieldArguments const& a, CLI::App const& verb, Context& context) {
     KeepFilesApart(a, output, context);
     auto const model = context.Load(a.mesh);
     RequireLevels(a, output, model, verb);
+    auto const evaluator = MakeEvaluator(a.evaluator, context.GetCommon().precision);
     auto options = a.inputs.MakeOptions(model.GetLevel());
+    options.evaluator = evaluator.get();
     bool const hasArrows = !a.picture.empty() && !a.streamlines.IsWanted();
     options.hasVertexVectors = output == FieldOutput::Mesh || hasArrows;
     if (output != FieldOutput::Mesh && options.hasVertexVectors && options.levels == 0 &&
@@ -122,12 +127,13 @@ int Run(FieldArguments const& a, CLI::App const& verb, Context& context) {
     AddToReport(context.GetReport(), field.audit);
     std::optional<engine::Streamlines> streamlines;
     if (a.streamlines.IsWanted())
-        streamlines = a.streamlines.Trace(model, field.controlForm, context);
+        streamlines = a.streamlines.Trace(model, field.controlForm, evaluator.get(), context);
 
     std::vector<std::string> warnings;
     engine::MeshSequence files;
     context.GetJob().Start("writing " + a.output);
-    WriteField(a, output, model, field, files, warnings, context);
+    WriteField(a, output, model, field, files, evaluator.get(), warnings, context);
+    AddToReport(context.GetReport(), evaluator.get());
     if (streamlines) a.streamlines.Write(model, *streamlines, context, files);
     if (!a.picture.empty()) {
         context.GetJob().Start("drawing " + a.picture);
@@ -164,6 +170,7 @@ Verb AddField(CLI::App& app) {
     verb->add_flag("--limit", a->isLimit, "with -o x.values.csv: values of the limit");
     verb->add_option("--along", a->along,
                      "CSV v0,v1: edges of MESH along whose limits -o x.along.csv has the field");
+    AddEvaluatorOption(*verb, a->evaluator, "refinement and vectors at vertices");
     verb->add_option(kWriteStencils, a->stencils,
                      "S1.mtx,S2.mtx: also write the subdivision of 1-forms and 2-forms down to "
                      "--levels as Matrix Market files; S1.edges0.csv and S1.edgesK.csv number the "

@@ -75,8 +75,10 @@ void StreamlineArguments::Check(CLI::App const& verb) const {
 
 engine::Streamlines StreamlineArguments::Trace(engine::Model const& model,
                                                std::span<double const> form,
+                                               eval::TableEvaluator* evaluator,
                                                Context& context) const {
     auto options = _options;
+    options.evaluator = evaluator;
     engine::PlaceTable seeds;
     if (!_seedsPath.empty()) {
         seeds = engine::ReadPlaces(_seedsPath);

@@ -24,9 +24,12 @@ public:
     ///                flags without --streamlines
     void Check(CLI::App const& verb) const;
 
-    /// Traces the lines and reports them. \param form  per edge of the mesh
+    /// Traces the lines and reports them.
+    ///
+    /// \param form       per edge of the mesh
+    /// \param evaluator  of the run, or null
     engine::Streamlines Trace(engine::Model const& model, std::span<double const> form,
-                              Context& context) const;
+                              eval::TableEvaluator* evaluator, Context& context) const;
 
     void Write(engine::Model const& model, engine::Streamlines const& streamlines,
                Context const& context, engine::MeshSequence& files) const;

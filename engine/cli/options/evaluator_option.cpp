@@ -8,9 +8,9 @@
 
 namespace limn::cli {
 
-void AddEvaluatorOption(CLI::App& verb, std::optional<eval::EvaluatorKind>& kind,
-                        std::string const& what) {
-    AddWordOption(
+CLI::Option* AddEvaluatorOption(CLI::App& verb, std::optional<eval::EvaluatorKind>& kind,
+                                std::string const& what) {
+    return AddWordOption(
         verb, "--evaluator", kind, eval::kEvaluatorWords,
         fmt::format("apply {} in float: simd (limn's), osd-cpu or osd-omp (OpenSubdiv's); "
                     "the report's `evaluator` counts them",
@@ -20,6 +20,11 @@ void AddEvaluatorOption(CLI::App& verb, std::optional<eval::EvaluatorKind>& kind
 std::unique_ptr<eval::TableEvaluator> MakeEvaluator(std::optional<eval::EvaluatorKind> kind,
                                                     std::optional<Precision> precision) {
     if (!kind) return nullptr;
+    if (!eval::IsBuiltIn(*kind)) {
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("--evaluator {}: this OpenSubdiv was built without OpenMP",
+                                eval::GetName(*kind)));
+    }
     if (precision == Precision::Double) {
         throw Error(ErrorCode::BadOption,
                     fmt::format("--evaluator {} works in float; --precision double excludes it",

@@ -13,13 +13,13 @@
 namespace limn::cli {
 
 /// Adds --evaluator. \param what  the tables that it applies, for the help
-void AddEvaluatorOption(CLI::App& verb, std::optional<eval::EvaluatorKind>& kind,
-                        std::string const& what);
+CLI::Option* AddEvaluatorOption(CLI::App& verb, std::optional<eval::EvaluatorKind>& kind,
+                                std::string const& what);
 
 /// The evaluator of a run; none where none was asked for.
 ///
 /// \param precision  of the files, if one was asked for
-/// \throws Error     BadOption: double
+/// \throws Error     BadOption: double; an evaluator that is not built in
 std::unique_ptr<eval::TableEvaluator> MakeEvaluator(std::optional<eval::EvaluatorKind> kind,
                                                     std::optional<Precision> precision);
 

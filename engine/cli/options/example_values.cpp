@@ -2,7 +2,7 @@
 #include "engine/cli/options/example_values.h"
 
 #include <algorithm>
-#include <span>
+#include <iterator>
 
 namespace limn::cli {
 
@@ -12,11 +12,15 @@ struct Example {
     std::string_view name, value;
 };
 
-constexpr Example kOutputs[] = {{"bake", "out/{map}.exr"},
-                                {"bands", "out/spot"},
-                                {"eval", "out/limit.csv"},
-                                {"measure", "out/spot"},
-                                {"morph", "out/spot"}};
+struct VerbExample {
+    std::string_view verb, name, value;
+};
+
+/// Where an option's values differ with the verb; the others stand below.
+constexpr VerbExample kOfVerbs[] = {
+    {"bake", "--output", "out/{map}.exr"}, {"bands", "--output", "out/spot"},
+    {"eval", "--output", "out/limit.csv"}, {"measure", "--output", "out/spot"},
+    {"morph", "--output", "out/spot"},     {"smooth", "--write-stencils", "out/spot"}};
 
 constexpr Example kValues[] = {{"--adaptive", "3e-4"},
                                {"--add", "bumps.obj:0.5"},
@@ -88,9 +92,13 @@ constexpr Example kValues[] = {{"--adaptive", "3e-4"},
                                {"MESH", "spot.obj"},
                                {"TO", "smile.obj"}};
 
-std::string_view Find(std::span<Example const> examples, std::string_view name) {
-    auto const found = std::ranges::find(examples, name, &Example::name);
-    return found == examples.end() ? std::string_view() : found->value;
+std::string_view Find(std::string_view verb, std::string_view name) {
+    auto const ofVerb = std::ranges::find_if(kOfVerbs, [&](VerbExample const& example) {
+        return example.verb == verb && example.name == name;
+    });
+    if (ofVerb != std::end(kOfVerbs)) return ofVerb->value;
+    auto const found = std::ranges::find(kValues, name, &Example::name);
+    return found == std::end(kValues) ? std::string_view() : found->value;
 }
 
 }  // namespace
@@ -98,8 +106,7 @@ std::string_view Find(std::span<Example const> examples, std::string_view name) 
 std::string FindExample(OptionEntry const& option, std::string_view verb,
                         std::string const& byDefault) {
     std::string_view const name = option.IsPositional() ? option.placeholder : option.longFlag;
-    std::string_view value = name == "--output" ? Find(kOutputs, verb) : std::string_view();
-    if (value.empty()) value = Find(kValues, name);
+    std::string_view const value = Find(verb, name);
     if (!value.empty()) return std::string(value);
     if (!option.words.empty()) return option.words[0];
     bool const isList = byDefault.starts_with('[') && byDefault.ends_with(']');

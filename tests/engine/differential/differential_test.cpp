@@ -352,5 +352,20 @@ TEST(EditReader, DeepAndLongValuesAreRefusedInAShortLine) {
     refuse("{\"filter\": \"a\\nb\"}");
 }
 
+// The solve makes errors of the coordinates larger.
+TEST(Differential, AnEvaluatorIsNearTheDoubles) {
+    auto const scene = LoadBumpy();
+    for (auto rule : {SubdivisionRule::Scheme, SubdivisionRule::Butterfly}) {
+        auto const expected = Refine(scene, 2, {.rule = rule});
+        eval::TableEvaluator door(eval::EvaluatorKind::OsdCpu);
+        auto const found = Refine(scene, 2, {.rule = rule, .evaluator = &door});
+        EXPECT_LT(test::LargestDifference(found.positions, expected.positions),
+                  2e-6 * test::BoxDiagonal(scene.positions));
+        ASSERT_FALSE(door.GetUses().empty());
+        EXPECT_EQ(door.GetUses()[0].what, "S0");
+        EXPECT_EQ(door.GetUses()[0].applications, 4u);  // in space and on coordinates
+    }
+}
+
 }  // namespace
 }  // namespace limn

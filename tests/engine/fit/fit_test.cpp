@@ -10,6 +10,7 @@
 #include "engine/scene/refine.h"
 #include "eval/surface/vertex_limits.h"
 #include "far_ext/topology/refiner.h"
+#include "support/errors.h"
 #include "support/files.h"
 #include "support/fit_meshes.h"
 #include "support/listener.h"
@@ -282,6 +283,47 @@ INSTANTIATE_TEST_SUITE_P(Larger, FitOf,
                          testing::Values("control/ict_head_skin.obj", "control/fancy_teapot.obj",
                                          "tri/kitten.obj"));
 #endif
+
+TEST(Fit, AnEvaluatorMeetsTheToleranceByEveryMethodThatAppliesA) {
+    using eval::SolveMethod;
+    engine::Scene const scene = test::LoadSpot();
+    for (auto method : {SolveMethod::Automatic, SolveMethod::Progressive, SolveMethod::Weighted,
+                        SolveMethod::Chebyshev, SolveMethod::ConjugateGradients}) {
+        for (auto kind : {eval::EvaluatorKind::OsdCpu, eval::EvaluatorKind::Simd}) {
+            SCOPED_TRACE(eval::GetName(method));
+            eval::TableEvaluator door(kind);
+            auto const result =
+                FitToLimit(scene, {.method = method, .tolerance = 1e-6, .evaluator = &door});
+            EXPECT_TRUE(result.HasConverged());
+            EXPECT_LT(FindMiss(result.mesh, scene.positions), 1.02e-6);
+            auto const uses = door.GetUses();
+            ASSERT_EQ(uses.size(), 1u);
+            EXPECT_EQ(uses[0].what, "A");
+            EXPECT_EQ(uses[0].rows, scene.positions.size() / 3);
+            EXPECT_GT(uses[0].applications, 3u);
+        }
+    }
+}
+
+TEST(Fit, AnEvaluatorMeetsTheToleranceOnAnyMesh) {
+    for (engine::Scene const& scene : MakeScenes()) {
+        eval::TableEvaluator door(eval::EvaluatorKind::OsdCpu);
+        auto const expected = FitToLimit(scene, {.tolerance = 1e-6});
+        auto const found = FitToLimit(scene, {.tolerance = 1e-6, .evaluator = &door});
+        EXPECT_EQ(found.HasConverged(), expected.HasConverged()) << scene.path;
+        if (!found.HasConverged()) continue;
+        EXPECT_LE(found.certificate.max, 1.01e-6) << scene.path;
+    }
+}
+
+TEST(Fit, AFactorisationHasNoTableForAnEvaluator) {
+    eval::TableEvaluator door(eval::EvaluatorKind::Simd);
+    EXPECT_EQ(test::CodeOf([&] {
+                  FitToLimit(test::LoadSpot(),
+                             {.method = eval::SolveMethod::Direct, .evaluator = &door});
+              }),
+              ErrorCode::BadOption);
+}
 
 }  // namespace
 }  // namespace limn

@@ -13,6 +13,7 @@
 #include "support/errors.h"
 #include "support/listener.h"
 #include "support/meshes.h"
+#include "support/values.h"
 
 namespace limn {
 namespace {
@@ -242,6 +243,20 @@ TEST(SurfaceNoise, StopsWhereItsHostWants) {
     auto const model = engine::Model::Build(test::MakeTorus(9, 7));
     EXPECT_TRUE(test::StopsHalfway(
         [&](engine::Job& job) { engine::SurfaceNoise(model, {.octaves = 3}, job); }));
+}
+
+TEST(SurfaceNoise, AnEvaluatorIsNearTheDoubles) {
+    auto const model = engine::Model::Build(test::LoadSpot());
+    engine::Job job;
+    auto const expected = engine::FindVertexNoise(model, {}, 2, job);
+    for (auto kind : {eval::EvaluatorKind::OsdCpu, eval::EvaluatorKind::Simd}) {
+        eval::TableEvaluator door(kind);
+        auto const found = engine::FindVertexNoise(model, {.evaluator = &door}, 2, job);
+        EXPECT_LT(test::LargestDifference(found.values, expected.values), 1e-5);
+        ASSERT_EQ(door.GetUses().size(), 1u);
+        EXPECT_EQ(door.GetUses()[0].what, "S0");
+        EXPECT_EQ(door.GetUses()[0].applications, 6u);  // positions and noise, to three octaves
+    }
 }
 
 }  // namespace

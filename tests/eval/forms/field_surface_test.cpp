@@ -152,5 +152,28 @@ TEST(FieldSurface, WhatIsOutOfRangeIsRefused) {
               "results: room for 1 is too little for 2 places");
 }
 
+TEST(FieldSurface, AnEvaluatorIsNearTheDoubles) {
+    auto const scene = test::MakeQuadSphere(1);
+    auto const refiner = far_ext::CreateRefiner(scene.cage);
+    auto const form = test::MakeCoordinateForm(refiner->GetLevel(0), scene.positions, 1);
+    eval::FieldSurface const expected(scene.cage, scene.positions, form, 1);
+    eval::TableEvaluator door(eval::EvaluatorKind::OsdCpu);
+    eval::FieldSurface const found(scene.cage, scene.positions, form, 1, &door);
+    std::vector<Vector> vectors;
+    double largest = 0.0, worst = 0.0;
+    ForEachPlace(scene, expected, [&](eval::SurfaceSample const&, Vector const& vector) {
+        vectors.push_back(vector);
+        largest = test::Worse(largest, vector.norm());
+    });
+    size_t place = 0;
+    ForEachPlace(scene, found, [&](eval::SurfaceSample const&, Vector const& vector) {
+        worst = test::Worse(worst, (vector - vectors[place++]).norm());
+    });
+    EXPECT_LT(worst, 1e-5 * largest);
+    std::vector<std::string> names;
+    for (auto const& use : door.GetUses()) names.push_back(use.what);
+    EXPECT_EQ(names, (std::vector<std::string>{"S0", "S1", "covectors"}));
+}
+
 }  // namespace
 }  // namespace limn

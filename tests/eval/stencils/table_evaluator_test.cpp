@@ -102,6 +102,18 @@ TEST(TableEvaluator, AnotherMayTakeItsPlaceAndSeesEveryApplication) {
     EXPECT_EQ(y, (std::vector<double>{3, 3}));
 }
 
+TEST(TableEvaluator, RowsWithoutEntriesAreZero) {
+    far_ext::SparseRows empty;
+    empty.AddRow({});
+    empty.AddRow({});
+    for (auto kind : {EvaluatorKind::Simd, EvaluatorKind::OsdCpu, EvaluatorKind::OsdOmp}) {
+        TableEvaluator door(kind);
+        std::vector<double> y(2, 7.0);
+        door.Make("rows", empty, 3).Apply(std::vector<double>{4, 5, 8}, 1, y);
+        EXPECT_EQ(y, (std::vector<double>{0, 0}));
+    }
+}
+
 TEST(TableEvaluator, WhatDoesNotFitIsRefused) {
     TableEvaluator door(EvaluatorKind::Simd);
     auto const table = door.Make("rows", MakeRows(), 3);
