@@ -197,6 +197,12 @@ std::string Explain(std::string const& path, engine::SmoothReport const& found) 
         path, missed.level, missed.residual, missed.sweeps);
 }
 
+/// What --adaptive puts in the place of options that nobody gave.
+void DescribeAdaptive(nlohmann::json& effective, engine::SmoothOptions const& options) {
+    effective["levels"] = options.levels;
+    effective["refinement"] = kSmoothRefinementWords.GetWord(engine::SmoothRefinement::Bisect);
+}
+
 int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     CheckOptions(a, verb);
     engine::CheckOptions(MakeOptions(a, verb, context, 1.0));
@@ -212,8 +218,10 @@ int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     context.GetReport()["inputs"].back()["subdivision"] =
         engine::DescribeSubdivision(model.GetCage());
     double const meanEdge = far_ext::FindMeanEdgeLength(model.GetLevel(), model.GetPositions());
-    auto [mesh, found] = engine::Smooth(model, MakeWidths(a, verb, model),
-                                        MakeOptions(a, verb, context, meanEdge), context.GetJob());
+    engine::SmoothOptions const options = MakeOptions(a, verb, context, meanEdge);
+    if (options.adaptive) DescribeAdaptive(context.GetReport()["effective_options"], options);
+    auto [mesh, found] =
+        engine::Smooth(model, MakeWidths(a, verb, model), options, context.GetJob());
     AddToReport(context.GetReport(), found, a.options);
     if (!found.HasConverged() && !a.keepsResult) return context.MissTarget(Explain(a.mesh, found));
 
