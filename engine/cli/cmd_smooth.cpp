@@ -234,6 +234,12 @@ void AddSweeps(std::string const& prefix, std::vector<engine::LevelSweep> const&
     }
 }
 
+/// What --adaptive puts in the place of options that nobody gave.
+void DescribeAdaptive(nlohmann::json& effective, engine::SmoothOptions const& options) {
+    effective["levels"] = options.levels;
+    effective["refinement"] = kSmoothRefinementWords.GetWord(engine::SmoothRefinement::Bisect);
+}
+
 int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     CheckOptions(a, verb);
     auto const evaluator = MakeEvaluator(a.evaluator, context.GetCommon().precision);
@@ -250,9 +256,10 @@ int Run(SmoothArguments const& a, CLI::App const& verb, Context& context) {
     context.GetReport()["inputs"].back()["subdivision"] =
         engine::DescribeSubdivision(model.GetCage());
     double const meanEdge = far_ext::FindMeanEdgeLength(model.GetLevel(), model.GetPositions());
+    engine::SmoothOptions const options = MakeOptions(a, verb, context, meanEdge, evaluator.get());
+    if (options.adaptive) DescribeAdaptive(context.GetReport()["effective_options"], options);
     auto [mesh, found, sweeps] =
-        engine::Smooth(model, MakeWidths(a, verb, model),
-                       MakeOptions(a, verb, context, meanEdge, evaluator.get()), context.GetJob());
+        engine::Smooth(model, MakeWidths(a, verb, model), options, context.GetJob());
     AddToReport(context.GetReport(), found, a.options);
     AddToReport(context.GetReport(), evaluator.get());
     if (!found.HasConverged() && !a.keepsResult) return context.MissTarget(Explain(a.mesh, found));

@@ -28,6 +28,10 @@ inline constexpr auto kMeasuredSurfaceWords = MakeEnumWords<engine::MeasuredSurf
 inline constexpr auto kAtBoundaryWords = MakeEnumWords<eval::AtBoundary>(
     "atBoundary", {{eval::AtBoundary::Tangent, "tangent"}, {eval::AtBoundary::Normal, "normal"}});
 
+/// What the pixels of a field's image are: vectors in object space, or flow in texture coordinates.
+inline constexpr auto kIsFlowWords =
+    MakeEnumWords<bool>("isFlow", {{false, "object"}, {true, "uv"}});
+
 /// Which way streamlines run from their seeds.
 inline constexpr auto kIsForwardOnlyWords =
     MakeEnumWords<bool>("isForwardOnly", {{false, "both"}, {true, "forward"}});

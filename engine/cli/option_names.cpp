@@ -8,6 +8,7 @@ namespace limn::cli {
 namespace {
 
 constexpr OptionName kOptionNames[] = {
+    {"FieldTexture", "--match-texture"},
     {"Graph", "--graph"},
     {"Natural", "--boundary-rule natural"},
     {"PaintedWidths", "--width-texture"},

@@ -169,6 +169,7 @@ public:
         if (!_options.wanted.empty())
             AddTo(_made.form, eval::MatchVectors(_model.GetRefiner(), _model.GetPositions(),
                                                  _options.wanted, [&] { _job.CheckStopped(); }));
+        if (_options.texture) AddTo(_made.form, MatchFieldTexture(_model, *_options.texture, _job));
         _job.CheckStopped();
         AddFunctions();
         Audit();

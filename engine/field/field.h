@@ -8,6 +8,7 @@
 
 #include <opensubdiv/far/topologyRefiner.h>
 
+#include "engine/field/field_texture.h"
 #include "engine/scene/job.h"
 #include "engine/scene/model.h"
 #include "eval/forms/field_designer.h"
@@ -47,6 +48,7 @@ struct FieldOptions {
     std::optional<std::vector<double>> harmonics;  ///< a coefficient per generator
     std::optional<std::vector<double>> edges;      ///< a given 1-form, per edge
     std::vector<eval::WantedVector> wanted;        ///< vectors to be matched
+    std::optional<FieldTexture> texture;           ///< images of vectors to be matched
     std::optional<std::vector<double>> values;     ///< a function per vertex; its gradient counts
     std::vector<eval::Pin> pins;  ///< a function that is harmonic between them; likewise
     std::optional<std::vector<double>> integrals;  ///< per face: further vortices
@@ -111,6 +113,7 @@ struct Field {
 ///                 strengths that do not add up to 0 where they must, a wrong number of harmonic
 ///                 coefficients or of values along edges; as DesignBounded; indices that no field
 ///                 can have.  BadOption: a single pin.  As RefineUniformly
+///                As MatchFieldTexture
 /// \throws Stopped
 /// Source  [Wang06] Sec. 4.2; [Forms 8]
 Field DesignField(Model const& model, FieldOptions const& options, Job& job);

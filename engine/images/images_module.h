@@ -16,11 +16,12 @@ struct ImagesModule {
                       bool (*take)(void* user, void const* bytes, size_t size), void* user,
                       char const* const* texts, size_t numTexts, char* reason, size_t reasonSize);
 
-    /// Reads the first channel of an image of any format, rows from the top. `allocate(user, width,
-    /// height)` makes room for it. On failure as above.
-    bool (*readFirstChannel)(char const* path,
-                             float* (*allocate)(void* user, int width, int height), void* user,
-                             char* reason, size_t reasonSize);
+    /// Reads channels of an image of any format, texel by texel, rows from the top: `numChannels`
+    /// from the first on that has one of the names, or from the image's first without names.
+    /// `allocate(user, width, height)` makes room for them. On failure as above.
+    bool (*readChannels)(char const* path, char const* const* firstNames, size_t numNames,
+                         int numChannels, float* (*allocate)(void* user, int width, int height),
+                         void* user, char* reason, size_t reasonSize);
 };
 
 /// \throws Error  Io if the module is missing: beside the program, in its library folder, and in

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <OpenImageIO/filesystem.h>
@@ -54,15 +56,34 @@ bool EncodePng(int width, int height, bool (*fillRow)(void* user, int row, unsig
     return output->close() || Fail(output->geterror(), reason, reasonSize);
 }
 
-bool ReadFirstChannel(char const* path, float* (*allocate)(void*, int, int), void* user,
-                      char* reason, size_t reasonSize) {
+/// The first channel that has one of the names, or 0 without names; none if there is no such.
+std::optional<int> FindChannel(OIIO::ImageSpec const& spec, char const* const* names,
+                               size_t numNames) {
+    if (numNames == 0) return 0;
+    for (size_t i = 0; i < numNames; ++i) {
+        int const channel = spec.channelindex(names[i]);
+        if (channel >= 0) return channel;
+    }
+    return {};
+}
+
+bool ReadChannels(char const* path, char const* const* firstNames, size_t numNames, int numChannels,
+                  float* (*allocate)(void*, int, int), void* user, char* reason,
+                  size_t reasonSize) {
     auto const input = OIIO::ImageInput::open(path);
     if (!input) return Fail(OIIO::geterror(), reason, reasonSize);
     OIIO::ImageSpec const& spec = input->spec();
     if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
         return Fail("it has no pixels in two dimensions", reason, reasonSize);
+    auto const first = FindChannel(spec, firstNames, numNames);
+    if (!first) return Fail(std::string("it has no channel ") + firstNames[0], reason, reasonSize);
+    if (*first + numChannels > spec.nchannels) {
+        return Fail("it has no " + std::to_string(numChannels) + " channels from " +
+                        std::string(spec.channel_name(*first)) + " on",
+                    reason, reasonSize);
+    }
     float* const pixels = allocate(user, spec.width, spec.height);
-    if (!input->read_image(0, 0, 0, 1, OIIO::TypeDesc::FLOAT, pixels))
+    if (!input->read_image(0, 0, *first, *first + numChannels, OIIO::TypeDesc::FLOAT, pixels))
         return Fail(input->geterror(), reason, reasonSize);
     return true;
 }
@@ -70,6 +91,6 @@ bool ReadFirstChannel(char const* path, float* (*allocate)(void*, int, int), voi
 }  // namespace
 
 extern "C" limn::engine::ImagesModule const* limn_images_module() {
-    static limn::engine::ImagesModule const module{EncodePng, ReadFirstChannel};
+    static limn::engine::ImagesModule const module{EncodePng, ReadChannels};
     return &module;
 }

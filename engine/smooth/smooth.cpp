@@ -420,7 +420,8 @@ void CheckInput(Model const& model, FilterWidths const& widths, SmoothOptions co
                                 model.GetPath(), largest, kLargestWidth, unit));
     }
     if (options.constraint == SmoothConstraint::Graph) RequireGraph(model);
-    if (options.keptFeatures) RequireTriangles(model);
+    if (options.keptFeatures) RequireTriangles(model, "keptFeatures");
+    if (options.adaptive) RequireTriangles(model, "adaptive");
 }
 
 /// Where a component shrank suspiciously, measures what it carries, and limits the width to that

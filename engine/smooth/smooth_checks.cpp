@@ -73,14 +73,14 @@ void RequireGraph(Model const& model) {
     }
 }
 
-void RequireTriangles(Model const& model) {
+void RequireTriangles(Model const& model, char const* member) {
     auto const& sizes = model.GetCage().faceSizes;
     auto const other = std::find_if(sizes.begin(), sizes.end(), [](int size) { return size != 3; });
     if (other == sizes.end()) return;
     throw Error(
         ErrorCode::BadMesh,
-        fmt::format("{}: {} has {} corners; `keptFeatures` needs triangles", model.GetPath(),
-                    model.NameFace(static_cast<Index>(other - sizes.begin())), *other));
+        fmt::format("{}: {} has {} corners; `{}` needs triangles", model.GetPath(),
+                    model.NameFace(static_cast<Index>(other - sizes.begin())), *other, member));
 }
 
 void CheckOptions(SmoothOptions const& options) {

@@ -33,8 +33,9 @@ void RefuseDefects(Model const& model, Job& job);
 /// \throws Error  BadMesh: a face that does not (named)
 void RequireGraph(Model const& model);
 
+/// \param member   the option that needs them
 /// \throws Error  BadMesh: a face (named) that is no triangle
-void RequireTriangles(Model const& model);
+void RequireTriangles(Model const& model, char const* member);
 
 /// Warns of corners so sharp that triangles degenerate there with the levels.
 ///

@@ -4,8 +4,10 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <regex>
 
 #include "engine/io/mesh_reader.h"
+#include "engine/io/number_table.h"
 #include "support/program/cli.h"
 #include "support/source_tree.h"
 #include "support/values.h"
@@ -31,9 +33,7 @@ protected:
     /// Runs a recipe's commands in the folder, small.
     void Run(std::string const& title) const {
         std::string commands = ReadRecipes().at(title);
-        std::string const large = "--size 1024";
-        for (size_t at = 0; (at = commands.find(large, at)) != std::string::npos;)
-            commands.replace(at, large.size(), "--size 128");
+        commands = std::regex_replace(commands, std::regex("--size [0-9]+"), "--size 128");
         namespace fs = std::filesystem;
         fs::create_directory(folder / "out");
         fs::create_directory_symlink(test::kSourceRoot / "scenes", folder / "scenes");
@@ -72,6 +72,48 @@ TEST_F(Recipes, AnEqualiserMakesBandsLouder) {
         EXPECT_TRUE(std::filesystem::exists(folder / ("out/recipe2." + std::string(map) + ".exr")));
 }
 
+TEST_F(Recipes, AFieldComesBackFromItsTexture) {
+    Run("A field there and back");
+    auto const read = [&](char const* name) {
+        return engine::ReadNumberTable(folder / name, {{"v0", "v1", "value"}});
+    };
+    auto const there = read("out/there.edges.csv"), back = read("out/back.edges.csv");
+    ASSERT_EQ(back.GetNumRows(), there.GetNumRows());
+    for (size_t row = 0; row < there.GetNumRows(); ++row)
+        EXPECT_NEAR(back.Get(row, 2), there.Get(row, 2), 1e-5);
+    EXPECT_TRUE(std::filesystem::exists(folder / "out/recipe3.lines.png"));
+}
+
+// Noise from 0 to 1 times 0.3, as the filter itself has smoothed it; what is exposed again gets
+// smaller.
+TEST_F(Recipes, NoiseDecidesWhereABlockWears) {
+    Run("A block and the weather");
+    engine::Scene const worn = engine::ReadMesh(folder / "out/worn.ply");
+    auto const& widths = worn.primvars.at(0).values;
+    auto const [least, largest] = std::ranges::minmax_element(widths);
+    EXPECT_GE(*least, 0.0);
+    EXPECT_LE(*largest, 0.3);
+    EXPECT_GT(*largest, 3.0 * *least);
+    EXPECT_LE(ReadJson(folder / "out/worn.json")["adaptive"]["estimated"], 1.2 * 4e-3);
+    EXPECT_LT(test::BoxDiagonal(Read("older.ply")), test::BoxDiagonal(worn.positions));
+}
+
+// The patch bends as asked but at its border, and nothing goes sideways.
+TEST_F(Recipes, APlateBendsByNumbers) {
+    Run("A plate bent by numbers");
+    json const edits = ReadJson(folder / "out/bent.json")["edits"];
+    ASSERT_EQ(edits.size(), 81u);
+    EXPECT_NEAR(edits[40]["reached"], 0.05, 0.002);  // in the middle
+    auto const bent = Read("bent.obj");
+    double height = 0.0, width = 0.0;
+    for (size_t i = 0; i < bent.size(); i += 3) {
+        height = std::max(height, std::abs(bent[i + 2]));
+        width = std::max({width, std::abs(bent[i]), std::abs(bent[i + 1])});
+    }
+    EXPECT_GT(height, 0.5);
+    EXPECT_NEAR(width, 6.0, 0.1);
+}
+
 TEST_F(Recipes, AScanBecomesACage) {
     Run("From a scan to a cage");
     EXPECT_LE(ReadJson(folder / "out/cage.json")["certificate"]["max"], 1.01e-6);
@@ -83,9 +125,10 @@ TEST_F(Recipes, AScanBecomesACage) {
 TEST_F(Recipes, OfThePageAreAllRunHere) {
     std::vector<std::string> titles;
     for (auto const& [title, commands] : ReadRecipes()) titles.push_back(title);
-    EXPECT_EQ(titles,
-              (std::vector<std::string>{"An equaliser", "Detail and an expression on another body",
-                                        "From a scan to a cage"}));
+    EXPECT_EQ(titles, (std::vector<std::string>{"A block and the weather", "A field there and back",
+                                                "A plate bent by numbers", "An equaliser",
+                                                "Detail and an expression on another body",
+                                                "From a scan to a cage"}));
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ std::set<std::string> ListMade(Words const& command) {
     if (verb != "bake") return made;
     std::istringstream maps(Behind(command, "--maps"));
     for (std::string map; std::getline(maps, map, ',');) {
-        std::string const name = Replace(output, "{map}", map);
+        std::string const name = Replace(output, "{map}", Replace(map, ":", "_"));
         if (Has(command, "--preview"))
             made.insert(Replace(Replace(name, "<UDIM>", "1001"), ".exr", ".png"));
         if (Has(command, "--picture"))

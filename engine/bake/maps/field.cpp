@@ -3,12 +3,12 @@
 // The tangent field of a 1-form, as vectors in object space or as flow in texture coordinates.
 
 #include <cmath>
-#include <set>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "engine/bake/maps/map_table.h"
+#include "engine/field/field_levels.h"
 #include "engine/scene/content_hash.h"
 #include "eval/forms/field_surface.h"
 #include "far_ext/error.h"
@@ -16,25 +16,6 @@
 namespace limn::engine {
 
 namespace {
-
-/// So deep that a refined face is 1 to 2 texels wide, or that there are a million.
-int ChooseLevels(BakedSurface const& baked) {
-    Model const& model = baked.model;
-    double const numFaces = std::max<double>(1.0, model.GetCage().GetNumFaces());
-    std::set<std::pair<double, double>> tiles;
-    for (size_t i = 0; i < model.GetUVs().size(); i += 2) {
-        tiles.emplace(std::floor(model.GetUVs()[i]), std::floor(model.GetUVs()[i + 1]));
-    }
-    double const texels =
-        static_cast<double>(baked.width) * baked.height * static_cast<double>(tiles.size());
-    int levels = 0;
-    double refined = numFaces;
-    while (levels < 8 && 4.0 * refined < texels && 4.0 * refined < 1e6) {
-        refined *= 4.0;
-        ++levels;
-    }
-    return levels;
-}
 
 /// d(u,v) along a tangent vector v = a P_s + b P_t.
 Eigen::Vector2d FindFlow(SampleBlock const& block, size_t i, Eigen::Vector3d const& v) {
@@ -55,9 +36,9 @@ public:
         : Map(std::move(traits)), _options(options) {}
 
     void Prepare(BakedSurface const& baked, Job&) override {
-        _field = std::make_unique<eval::FieldSurface>(baked.model.GetCage(),
-                                                      baked.model.GetPositions(), *_options.field,
-                                                      ChooseLevels(baked), _options.evaluator);
+        _field = std::make_unique<eval::FieldSurface>(
+            baked.model.GetCage(), baked.model.GetPositions(), *_options.field,
+            ChooseFieldLevels(baked.model, baked.width, baked.height), _options.evaluator);
     }
 
     std::unique_ptr<MapSampler> MakeSampler() const override {

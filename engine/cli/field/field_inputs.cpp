@@ -134,6 +134,7 @@ engine::FieldOptions FieldInputs::MakeOptions(Far::TopologyLevel const& level) c
     if (!_harmonics.empty()) options.harmonics = ParseList(_harmonics, "--harmonic");
     if (!_edgesPath.empty()) options.edges = engine::ReadEdgeValues(_edgesPath, level);
     if (!_matchPath.empty()) options.wanted = ReadWanted(_matchPath, level);
+    if (!_texturePattern.empty()) options.texture = engine::FieldTexture{_texturePattern, _isFlow};
     if (!_valuesPath.empty())
         options.values = ReadNumbers(_valuesPath, "vertex", level.GetNumVertices());
     if (!_integralsPath.empty())
@@ -143,21 +144,22 @@ engine::FieldOptions FieldInputs::MakeOptions(Far::TopologyLevel const& level) c
 }
 
 void FieldInputs::RequirePart(engine::FieldOptions const& options) const {
-    bool const hasPart = !options.sources.empty() || !options.vortices.empty() ||
-                         options.harmonics || options.edges || !_matchPath.empty() ||
-                         options.values || options.integrals || !options.pins.empty() ||
-                         !options.singularities.empty() || !options.loops.empty() ||
-                         !options.boundaryEdges.empty() || !options.arcFluxes.empty();
+    bool const hasPart =
+        !options.sources.empty() || !options.vortices.empty() || options.harmonics ||
+        options.edges || !_matchPath.empty() || options.texture || options.values ||
+        options.integrals || !options.pins.empty() || !options.singularities.empty() ||
+        !options.loops.empty() || !options.boundaryEdges.empty() || !options.arcFluxes.empty();
     if (hasPart) return;
     throw Error(ErrorCode::BadOption,
                 "a field needs at least one of --source, --sink, --vortex, --harmonic, --edges, "
-                "--match, --values, --pin, --integrals, --singularity, --loop and "
+                "--match, --match-texture, --values, --pin, --integrals, --singularity, --loop and "
                 "--boundary-data");
 }
 
 std::vector<NamedFile> FieldInputs::ListFiles() const {
     return {{"--edges", _edgesPath},
             {"--match", _matchPath},
+            {"--match-texture", _texturePattern},
             {"--values", _valuesPath},
             {"--integrals", _integralsPath},
             {"--boundary-data", _boundaryPath}};
@@ -174,12 +176,24 @@ void FieldInputs::AddParts(CLI::App& verb) {
                     "c1,c2,...: circulations round handles and holes, one per generator");
     verb.add_option("--edges", _edgesPath,
                     "CSV v0,v1,value: a field along edges of MESH, to be added");
-    verb.add_option("--match", _matchPath,
-                    "CSV face,x,y,z or vertex,x,y,z: vectors that the field is to fit");
     AddRepeated(verb, "--singularity", _singularities,
                 "vertex inside and the index (1, -1, -2 ...) that a field of unit vectors has "
                 "there; on a closed component they add up to its Euler characteristic (repeatable)",
                 "V:INDEX");
+}
+
+void FieldInputs::AddMatches(CLI::App& verb) {
+    auto* const match = verb.add_option(
+        "--match", _matchPath, "CSV face,x,y,z or vertex,x,y,z: vectors that the field is to fit");
+    auto* const texture =
+        verb.add_option("--match-texture", _texturePattern,
+                        "images of vectors that it is to fit, as bake --maps field writes them; "
+                        "<UDIM> stands for the tile, without it 1001 alone is read")
+            ->excludes(match);
+    AddWordOption(verb, "--match-space", _isFlow, kIsFlowWords,
+                  "object (default): pixels R,G,B are vectors; uv: R,G are flow in texture "
+                  "coordinates")
+        ->needs(texture);
 }
 
 void FieldInputs::AddFunctions(CLI::App& verb) {
@@ -213,6 +227,7 @@ void FieldInputs::AddBoundaries(CLI::App& verb) {
 
 void FieldInputs::Add(CLI::App& verb) {
     AddParts(verb);
+    AddMatches(verb);
     AddFunctions(verb);
     AddNumberOption(verb, "--levels", _options.levels,
                     "refinements (default 0; 1 where faces are not all quads)", {0, 10});

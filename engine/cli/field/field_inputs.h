@@ -23,11 +23,14 @@ public:
 
 private:
     void AddParts(CLI::App& verb);
+    void AddMatches(CLI::App& verb);
     void AddFunctions(CLI::App& verb);
     void AddBoundaries(CLI::App& verb);
     void RequirePart(engine::FieldOptions const& options) const;
 
-    std::string _edgesPath, _matchPath, _harmonics, _valuesPath, _integralsPath, _boundaryPath;
+    std::string _edgesPath, _matchPath, _texturePattern, _harmonics, _valuesPath, _integralsPath,
+        _boundaryPath;
+    bool _isFlow = false;
     std::vector<std::string> _sources, _sinks, _vortices, _pins, _singularities, _loops, _arcFluxes;
     engine::FieldOptions _options;
 };

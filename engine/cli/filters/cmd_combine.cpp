@@ -59,6 +59,10 @@ void CheckOffsetName(CombineArguments const& a) {
         throw Error(ErrorCode::BadOption,
                     fmt::format("--write-offset: '{}' is no name of a scalar", a.offsetName));
     }
+    if (a.offsetName == "n") {
+        throw Error(ErrorCode::BadOption,
+                    "--write-offset: nx, ny and nz are a PLY's normals; take another name than n");
+    }
     if (engine::GetEnding(a.output) != ".ply") {
         throw Error(
             ErrorCode::BadOption,

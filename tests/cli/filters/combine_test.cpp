@@ -107,6 +107,7 @@ TEST_F(CliCombine, OptionsThatDoNotFitAreStatus2) {
     refuse({"--carry", "object"}, "--carry needs --offset");
     refuse({"--write-offset", "d"}, "--write-offset", "out.obj");
     refuse({"--write-offset", "two words"}, "--write-offset");
+    refuse({"--write-offset", "n"}, "a PLY's normals", "out.ply");
     refuse({"--add", b}, "out.stl", "out.stl");
 }
 

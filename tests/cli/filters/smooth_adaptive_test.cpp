@@ -2,9 +2,14 @@
 //
 // limn smooth --adaptive, --order and --keep-features from outside.
 
+#include <cmath>
 #include <filesystem>
+#include <sstream>
 #include <tuple>
 
+#include <fmt/format.h>
+
+#include "engine/io/mesh_reader.h"
 #include "support/adaptive_meshes.h"
 #include "support/program/cli_smooth.h"
 #include "support/values.h"
@@ -28,6 +33,76 @@ TEST_F(CliSmooth, AdaptiveRunsAreReported) {
     EXPECT_GT(adaptive["smallest_edge"], 0.0);
     EXPECT_GT(adaptive["settle_moves"].size(), 0u);
     EXPECT_FALSE(report.contains("settle_moves"));
+}
+
+// Without --levels it may go eight deep, by bisection.
+TEST_F(CliSmooth, TheReportOfAnAdaptiveRunHasTheDepthInEffect) {
+    Words const adaptive{"--adaptive", "1e-2", "--width-factor", "0.2"};
+    Smooth(icosa, adaptive);
+    EXPECT_EQ(Report()["effective_options"]["levels"], 8);
+    EXPECT_EQ(Report()["effective_options"]["refinement"], "bisect");
+    Smooth(icosa, adaptive + Words{"--levels", "3"});
+    EXPECT_EQ(Report()["effective_options"]["levels"], 3);
+    Smooth(icosa, {"--levels", "1"});
+    EXPECT_EQ(Report()["effective_options"]["refinement"], "quadrisect");
+}
+
+/// The cube with textures, of two triangles a side.
+std::string TriangulateCube() {
+    std::string text;
+    for (std::string const& line : Lines(test::ReadText(test::ScenePath("cube/cube.obj")))) {
+        std::istringstream words(line);
+        std::string key, a, b, c, d;
+        words >> key >> a >> b >> c >> d;
+        text +=
+            key != "f" ? line + "\n" : fmt::format("f {0} {1} {2}\nf {0} {2} {3}\n", a, b, c, d);
+    }
+    return text;
+}
+
+TEST_F(CliSmooth, AdaptiveTakesPaintedWidths) {
+    std::string const cube = folder.Write("triangles.obj", TriangulateCube()),
+                      white = folder.Write("white.pgm", "P2 1 1 255\n255\n"),
+                      black = folder.Write("black.pgm", "P2 1 1 255\n0\n");
+    Words const adaptive{"--adaptive", "1e-2", "--width", "0.3"};
+    auto const plain = Smooth(cube, adaptive),
+               allWhite = Smooth(cube, adaptive + Words{"--width-texture", white}, "white.ply"),
+               allBlack = Smooth(cube, adaptive + Words{"--width-texture", black}, "black.ply");
+    ASSERT_EQ(allWhite.positions.size(), plain.positions.size());
+    EXPECT_LT(test::LargestDifference(allWhite.positions, plain.positions), 1e-6);
+    // Without a width nothing moves, and what does not move needs no triangles.
+    EXPECT_EQ(allBlack.positions, engine::ReadMesh(cube).positions);
+}
+
+/// A sheet of 4 x 4 squares, folded at x = 0, that fills the texture.
+std::string WriteFoldedSheet() {
+    std::string vertices, textures, faces;
+    for (int j = 0; j <= 4; ++j) {
+        for (int i = 0; i <= 4; ++i) {
+            vertices += fmt::format("v {} {} {}\n", i - 2, j - 2, 2 - std::abs(i - 2));
+            textures += fmt::format("vt {} {}\n", 0.25 * i, 0.25 * j);
+            if (i == 4 || j == 4) continue;
+            int const a = 5 * j + i + 1, b = a + 1, c = b + 5, d = a + 5;
+            faces +=
+                fmt::format("f {0}/{0} {1}/{1} {2}/{2}\nf {0}/{0} {2}/{2} {3}/{3}\n", a, b, c, d);
+        }
+    }
+    return vertices + textures + faces;
+}
+
+// From black to white along the fold, which so becomes rounder. The law is that of all adaptive
+// runs: the error asked for, and a third of what the last two uniform levels differ by.
+TEST_F(CliSmooth, AdaptiveIsNearUniformWhereWidthsArePainted) {
+    std::string const sheet = folder.Write("sheet.obj", WriteFoldedSheet()),
+                      ramp = folder.Write("ramp.pgm", "P2 1 4 255\n255\n170\n85\n0\n");
+    Words const painted{"--width", "0.4", "--width-texture", ramp};
+    auto const found = Smooth(sheet, painted + Words{"--adaptive", "8e-3"}),
+               finer = Smooth(sheet, painted + Words{"--levels", "2", "--settle", "1e-3"}),
+               finest = Smooth(sheet, painted + Words{"--levels", "3", "--settle", "1e-3"});
+    double const reach = 0.5, diagonal = 6.0;
+    EXPECT_LT(found.cage.numVertices, finest.cage.numVertices);
+    EXPECT_LE(test::FindLargestDistance(found, finest, reach),
+              8e-3 * diagonal + test::FindLargestDistance(finer, finest, reach) / 3);
 }
 
 TEST_F(CliSmooth, AdaptiveRunsHaveTheSameBytesForAnyNumberOfThreads) {
@@ -86,7 +161,7 @@ TEST_F(CliSmooth, WhatDoesNotGoTogetherIsNamed) {
           {{"--adaptive", "1e-3", "--settle", "1e-3"}, 2, "--adaptive and --settle exclude"},
           {{"--adaptive", "1e-3", "--sweeps", "3"}, 2, "--adaptive and --sweeps exclude"},
           {{"--adaptive", "1e-3", "--solver", "jacobi"}, 2, "--solver jacobi"},
-          {{"--adaptive", "1e-3"}, 3, "4 corners"}}) {
+          {{"--adaptive", "1e-3"}, 3, "4 corners; --adaptive needs triangles"}}) {
         ExpectError(Limn(Words{"smooth", cube, "-o", folder / "x.obj"} + words), status, message);
         EXPECT_FALSE(std::filesystem::exists(folder / "x.obj"));
     }

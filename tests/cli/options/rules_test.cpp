@@ -100,6 +100,15 @@ TEST_F(CliRules, FacesThatDoNotFitAreStatus3) {
         ExpectError(Refine(Quads(), {"--rule", rule}), 3, "takes triangles only");
 }
 
+// Side by side, the one listed clockwise, the other counter-clockwise.
+TEST_F(CliRules, EdgesThatDoNotFitAreNamedByTheirVertices) {
+    std::string const mesh = folder.Write("against.obj",
+                                          "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
+                                          "f 1 2 3 4\nf 2 3 6 5\n");
+    ExpectError(Refine(mesh, {"--rule", "kobbelt"}), 3,
+                "the edge from vertex 1 to 2 joins faces wound in opposite directions");
+}
+
 TEST_F(CliRules, RoughVerticesAreNamed) {
     // A pole of valence 8, and others of valence 4; the tetrahedron's valences are 3.
     for (char const* space : {"spatial", "differential"}) {
