@@ -69,8 +69,8 @@ fuzz() {
 check_fuzz() {
     in_folder fuzz tools build_target fuzzers -DLIMN_FUZZ=ON -DCMAKE_UNITY_BUILD=ON \
         -DCMAKE_CXX_COMPILER=clang++-19 -DCMAKE_CXX_FLAGS_RELEASE='-O1 -g1'
-    fuzzers='readers tables images verbs commands'
-    share=$((fuzz_seconds / 5))
+    fuzzers='readers tables images deflate verbs commands'
+    share=$((fuzz_seconds / 6))
     for fuzzer in $fuzzers; do fuzz "$fuzzer" "$share"; done
 }
 

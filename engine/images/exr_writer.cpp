@@ -6,6 +6,7 @@
 #include <map>
 #include <new>
 #include <numeric>
+#include <span>
 #include <system_error>
 
 #include <OpenEXR/ImfChannelList.h>
@@ -20,6 +21,7 @@
 #include <fmt/format.h>
 #include <libdeflate.h>
 
+#include "engine/images/deflate/tile_deflate.h"
 #include "engine/images/pixel_kernel.h"
 #include "engine/io/descriptor.h"
 #include "engine/io/file.h"
@@ -93,17 +95,46 @@ Imf::Compression ToLibrary(ExrCompression compression) {
     }
 }
 
-/// One per thread: a compressor and its buffers.
-struct Scratch {
-    std::vector<uint16_t> words;
-    std::vector<uint8_t> split, predicted;
-    libdeflate_compressor* compressor = nullptr;
-    ~Scratch() { libdeflate_free_compressor(compressor); }
-};
-
-// Level 2 of libdeflate makes files at most 5 % larger than OpenEXR's zlib level 4 in half of the
-// time; see bench/README.md.
+// Level 2 of libdeflate makes files of floats at most 5 % larger than OpenEXR's zlib level 4 in
+// half of the time; see bench/README.md.
 constexpr int kDeflateLevel = 2;
+
+/// One per thread: compressors and their buffers.
+class Scratch {
+public:
+    Scratch() = default;
+    Scratch(Scratch const&) = delete;
+    Scratch& operator=(Scratch const&) = delete;
+    ~Scratch() { libdeflate_free_compressor(_compressor); }
+
+    std::vector<uint16_t> words;  ///< a tile's pixels
+
+    /// The words as EXR's ZIP has them.
+    ///
+    /// \return empty if that is not smaller
+    std::span<uint8_t const> Zip(size_t wordsPerRow, bool isHalf) {
+        size_t const numBytes = 2 * words.size();
+        _split.resize(numBytes);
+        _zipped.resize(numBytes);
+        std::span<uint8_t> const predicted = _tileDeflate.Prepare(numBytes, wordsPerRow);
+        eval::GetKernel<PixelKernel>().splitAndPredict(words.data(), words.size(), _split.data(),
+                                                       predicted.data());
+        size_t const size = isHalf ? _tileDeflate.Compress(_zipped) : Deflate(predicted);
+        return std::span(_zipped).first(size);
+    }
+
+private:
+    size_t Deflate(std::span<uint8_t const> bytes) {
+        if (!_compressor) _compressor = libdeflate_alloc_compressor(kDeflateLevel);
+        if (!_compressor) throw std::bad_alloc();
+        return libdeflate_zlib_compress(_compressor, bytes.data(), bytes.size(), _zipped.data(),
+                                        _zipped.size() - 1);
+    }
+
+    std::vector<uint8_t> _split, _zipped;
+    TileDeflate _tileDeflate;
+    libdeflate_compressor* _compressor = nullptr;
+};
 
 }  // namespace
 
@@ -296,15 +327,13 @@ ExrTile ExrWriter::Pack(int level, int x, int y, float const* const* planes, siz
     int const T = ExrSpec::kTileSize;
     int const width = std::min(T, _spec.GetLevelWidth(level) - x * T);
     int const height = std::min(T, _spec.GetLevelHeight(level) - y * T);
-    size_t const numWords = _spec.GetWordsPerTexel() * static_cast<size_t>(width) * height,
-                 numBytes = 2 * numWords;
+    size_t const w = static_cast<size_t>(width), h = static_cast<size_t>(height);
+    size_t const wordsPerRow = _spec.GetWordsPerTexel() * w;
 
     thread_local Scratch scratch;
-    scratch.words.resize(numWords);
+    scratch.words.resize(wordsPerRow * h);
     ExrTile tile{level, x, y, {}, 0};
     // Pixels as EXR has them: row after row, in each the channels one after another.
-    size_t const w = static_cast<size_t>(width), h = static_cast<size_t>(height);
-    size_t const wordsPerRow = numWords / h;
     uint16_t* to = scratch.words.data();
     PixelKernel const& kernel = eval::GetKernel<PixelKernel>();
     for (int channel : _sortedChannels) {
@@ -319,25 +348,14 @@ ExrTile ExrWriter::Pack(int level, int x, int y, float const* const* planes, siz
             to += 2 * w;
         }
     }
-    auto const* const raw = reinterpret_cast<uint8_t const*>(scratch.words.data());
-    if (_spec.compression != ExrCompression::Zip && _spec.compression != ExrCompression::Zips) {
-        tile.bytes.assign(raw, raw + numBytes);
-        return tile;
-    }
-    scratch.split.resize(numBytes);
-    scratch.predicted.resize(numBytes);
-    kernel.splitAndPredict(scratch.words.data(), numWords, scratch.split.data(),
-                           scratch.predicted.data());
-    if (!scratch.compressor) scratch.compressor = libdeflate_alloc_compressor(kDeflateLevel);
-    if (!scratch.compressor) throw std::bad_alloc();
-    tile.bytes.resize(numBytes);
+    std::span<uint8_t const> bytes;
+    if (_spec.compression == ExrCompression::Zip || _spec.compression == ExrCompression::Zips)
+        bytes = scratch.Zip(wordsPerRow, _spec.GetWordsPerTexel() == _spec.channels.size());
     // A chunk that does not become smaller is stored as it is, which readers tell by its size.
-    size_t const size = libdeflate_zlib_compress(scratch.compressor, scratch.predicted.data(),
-                                                 numBytes, tile.bytes.data(), numBytes - 1);
-    if (size == 0)
-        tile.bytes.assign(raw, raw + numBytes);
-    else
-        tile.bytes.resize(size);
+    if (bytes.empty()) {
+        bytes = {reinterpret_cast<uint8_t const*>(scratch.words.data()), 2 * scratch.words.size()};
+    }
+    tile.bytes.assign(bytes.begin(), bytes.end());
     return tile;
 }
 
