@@ -131,9 +131,8 @@ private:
         throw Error(ErrorCode::BadMesh, fmt::format("{}: {}", _path, what));
     }
 
-    Json const& ListOf(std::string const& key, Json const& value) const {
+    void RequireList(std::string const& key, Json const& value) const {
         if (!value.is_array()) Refuse(fmt::format("'{}' is no list", key));
-        return value;
     }
 
     /// All keys that are needed have been found; there must be no others.
