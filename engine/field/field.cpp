@@ -72,8 +72,8 @@ void Subdivide(eval::TableEvaluator* evaluator, Field& field, Job& job) {
             std::max(audit.commutationD1,
                      FindLargestDifference(far_ext::BuildD1(fine), step.s1, step.s2,
                                            far_ext::BuildD1(coarse), coarse.GetNumEdges()));
-        field.form = eval::ApplyRows(evaluator, step.kS1, step.s1, field.form);
-        if (evaluator) curl = eval::ApplyRows(evaluator, step.kS2, step.s2, curl);
+        field.form = eval::ApplyRows(evaluator, far_ext::FormStencils::kS1, step.s1, field.form);
+        if (evaluator) curl = eval::ApplyRows(evaluator, far_ext::FormStencils::kS2, step.s2, curl);
     }
     // In double S2 of the curl is the form's own, to rounding.
     auto const last = refiner.GetLevel(refiner.GetMaxLevel());

@@ -14,7 +14,9 @@ namespace limn::eval {
 class CascadeTables {
 public:
     // Their names among those that an evaluator counts.
-    static constexpr char const *kProlongation = "prolongation", *kSweep = "sweep", *kLoad = "load";
+    static constexpr char const* kProlongation = "prolongation";
+    static constexpr char const* kSweep = "sweep";
+    static constexpr char const* kLoad = "load";
 
     /// \param evaluator  outlives this
     explicit CascadeTables(TableEvaluator& evaluator) : _evaluator(evaluator) {}

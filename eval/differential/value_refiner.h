@@ -14,7 +14,8 @@ namespace limn::eval {
 class ValueRefiner {
 public:
     // Their names among those that an evaluator counts.
-    static constexpr char const *kVertexTable = "S0", *kFVarTable = "S0 face-varying";
+    static constexpr char const* kVertexTable = "S0";
+    static constexpr char const* kFVarTable = "S0 face-varying";
 
     /// \param evaluator  null: in double. Both outlive this
     ValueRefiner(Far::TopologyRefiner const& refiner, TableEvaluator* evaluator)

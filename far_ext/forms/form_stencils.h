@@ -20,7 +20,8 @@ namespace limn::far_ext {
 ///          [Forms 6].
 struct FormStencils {
     // Their names in reports.
-    static constexpr char const *kS1 = "S1", *kS2 = "S2";
+    static constexpr char const* kS1 = "S1";
+    static constexpr char const* kS2 = "S2";
 
     SparseRows s1, s2;
 };

@@ -139,7 +139,8 @@ TEST(Sweeps, WhatNothingMovesStaysWhereItIsUnderAnEvaluator) {
     eval::TableEvaluator door(eval::EvaluatorKind::Simd);
     auto const refined = SmoothBySweeps(model, 0.1, 2, {.evaluator = &door}).mesh->positions;
     auto const still = SmoothBySweeps(model, 0.0, 2, {.evaluator = &door}).mesh->positions;
-    auto const level = test::MakeRefiner(scene, 2)->GetLevel(2);
+    auto const refiner = test::MakeRefiner(scene, 2);
+    auto const level = refiner->GetLevel(2);
     for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
         if (!level.IsVertexBoundary(vertex)) continue;
         EXPECT_EQ(test::PointAt(refined, vertex), test::PointAt(still, vertex));
