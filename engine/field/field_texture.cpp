@@ -30,7 +30,7 @@ struct CoveredTexel {
     Index face = -1;
     int domain = 0;
     double s = 0.0, t = 0.0;
-    double distance = std::numeric_limits<double>::infinity();  // from its cell's middle
+    double distance = std::numeric_limits<double>::infinity();  // squared, from its cell's middle
     std::array<float, 3> value{};
 };
 
@@ -138,7 +138,8 @@ void TexelChooser::TakeFace(Index face, std::vector<TexelHits> const& hits, Texe
                                         path, x, y, value, _model.NameFace(face)));
             }
             auto const cell = _cells.Find({face, domain, texel.s, texel.t});
-            texel.distance = std::hypot(cell.s - _middle, cell.t - _middle);
+            double const ds = cell.s - _middle, dt = cell.t - _middle;
+            texel.distance = ds * ds + dt * dt;
             if (_texels.size() <= static_cast<size_t>(cell.face))
                 _texels.resize(static_cast<size_t>(cell.face) + 1);
             CoveredTexel& best = _texels[cell.face];

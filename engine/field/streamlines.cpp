@@ -74,6 +74,13 @@ eval::StreamlineOptions MakeLineOptions(Model const& model, eval::FlowSurface co
         if (options.separation) line.step = std::min(line.step, *options.separation / 8.0);
     }
     double const diagonal = FindExtent(model.GetPositions()).GetDiagonal();
+    // All lines would be too short, each traced before that is known.
+    if (options.separation && !options.seeds && *options.separation > diagonal) {
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("`separation` is {:g}; no two lines are that far apart on a mesh "
+                                "whose box has a diagonal of {:g}",
+                                *options.separation, diagonal));
+    }
     if (options.maxLength)
         line.maxLength = *options.maxLength;
     else if (!options.separation)

@@ -46,6 +46,7 @@ struct Streamlines {
 ///
 /// \param form        per edge of the mesh
 /// \throws Error      BadOption: neither separation nor seeds; a number that is not positive; a
+///                    separation of more than the mesh has, without seeds; a
 ///                    step of more than D/4, or so short that a line would have 2^27 of them;
 ///                    TooLarge: as eval::FillEvenly; as eval::FieldSurface
 /// \throws PlaceError a seed that is no place of the limit

@@ -130,6 +130,22 @@ TEST(Documents, NameUnitsThatExist) {
     }
 }
 
+TEST(Documents, NameTestsThatExist) {
+    std::set<std::string> tests;
+    for (fs::path const& source : ListFiles({"tests"}, {".cpp"})) {
+        ForEachMatch(
+            test::ReadText(source), R"(\nTEST(_F|_P)?\((\w+),\s*(\w+)\))",
+            [&](std::smatch const& test) { tests.insert(test[2].str() + "." + test[3].str()); });
+    }
+    size_t numNamed = 0;
+    ForEachMatch(test::ReadText(kRoot / "docs/papers.md"), R"(`([A-Z]\w+\.[A-Z]\w+)`)",
+                 [&](std::smatch const& name) {
+                     ++numNamed;
+                     EXPECT_TRUE(tests.contains(name[1])) << name[1];
+                 });
+    EXPECT_GT(numNamed, 40u);
+}
+
 TEST(TheoryPages, SayInEachSectionWhichCodeStandsOnIt) {
     for (fs::path const& page : ListFiles({"docs/theory"}, {".md"})) {
         std::string const text = test::ReadText(page);

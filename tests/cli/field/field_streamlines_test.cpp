@@ -124,6 +124,8 @@ TEST_F(CliStreamlines, WhatCannotBeIsRefused) {
     expect({"--streamlines", folder / "l.obj", "--separation", "0"}, 2, "--separation is 0");
     expect({"--streamlines", folder / "l.obj", "--separation", "0.1", "--step", "0.05"}, 2,
            "--step");
+    expect({"--streamlines", folder / "l.obj", "--separation", "100"}, 2,
+           "--separation is 100; no two lines are that far apart");
     expect({"--streamlines", folder / "l.obj", "--separation", "nan"}, 2, "--separation");
     expect({"--streamlines", folder / "l.obj", "--seeds", WriteSeeds("0,0.5,2\n")}, 3, "line 2");
     expect({"--streamlines", folder / "l.obj", "--seeds", WriteSeeds("99999,0,0\n")}, 3, "99999");

@@ -47,6 +47,28 @@ TEST_P(DirMagOf, TheReferenceIsMet) {
               1e-8 * test::BoxDiagonal(scene.positions));
 }
 
+// [Zhu11] Fig. 5: of coordinates that are equally long, linear means are shorter, which makes
+// waves.
+TEST(DirMag, EqualMagnitudesStayEqualWhereLinearMeansGetShorter) {
+    auto const scene = test::LoadDifferential("icosa", Sdc::SCHEME_LOOP);
+    auto const refiner = test::MakeRefiner(scene, 1);
+    auto const deltas =
+        test::Apply(far_ext::BuildCombinatorialLaplacian(refiner->GetLevel(0)), scene.positions);
+    auto const split = eval::SplitDirMag(refiner->GetLevel(0), scene.positions, deltas);
+    auto const rows = far_ext::BuildSubdivisionRows(*refiner, 1, SubdivisionRule::Butterfly);
+    auto const fine = eval::SubdivideDirMag(rows, split).magnitudes;
+    auto const linear = test::Apply(rows, deltas);
+    double const length = split.magnitudes[0];
+    for (size_t i = 0; i < fine.size(); ++i) {
+        EXPECT_NEAR(fine[i], length, 1e-9 * length);
+        Eigen::Map<Eigen::Vector3d const> const mean(&linear[3 * i]);
+        if (i < split.magnitudes.size())
+            EXPECT_NEAR(mean.norm(), length, 1e-9 * length);
+        else
+            EXPECT_LT(mean.norm(), 0.99 * length);
+    }
+}
+
 TEST(DirMag, ThePartsMakeTheWhole) {
     auto const scene = test::MakeFan(5, Sdc::SCHEME_LOOP, 0.2, 0.3);
     auto const refiner = test::MakeRefiner(scene, 0);

@@ -14,15 +14,15 @@
 namespace limn {
 namespace {
 
-using Form = std::vector<double>;
-using Wanted = std::vector<eval::WantedAtPlace>;
+using Values = std::vector<double>;
+using PlaceList = std::vector<eval::WantedAtPlace>;
 
-constexpr int kLevels = 2;
+constexpr int kPlaceLevels = 2;
 
-Form MakeRandomForm(engine::Scene const& scene) {
+Values MakeRandomForm(engine::Scene const& scene) {
     auto const refiner = test::MakeRefiner(scene, 0);
     std::mt19937 random(7);
-    Form form;
+    Values form;
     for (Index edge = 0; edge < refiner->GetLevel(0).GetNumEdges(); ++edge)
         form.push_back(static_cast<double>(random() % 2001) / 1000.0 - 1.0);
     return form;
@@ -30,14 +30,14 @@ Form MakeRandomForm(engine::Scene const& scene) {
 
 /// The form's limit field in the middles of all faces refined twice, each times a factor.
 template <class Factor>
-Wanted SampleField(engine::Scene const& scene, Form const& form, Factor factor) {
+PlaceList SampleField(engine::Scene const& scene, Values const& form, Factor factor) {
     auto const refiner = test::MakeRefiner(scene, 0);
     eval::LimitSurface const surface(*refiner);
-    eval::RefinedFaces const refined(surface, kLevels);
-    eval::FieldSurface const field(scene.cage, scene.positions, form, kLevels);
+    eval::RefinedFaces const refined(surface, kPlaceLevels);
+    eval::FieldSurface const field(scene.cage, scene.positions, form, kPlaceLevels);
     eval::FieldSurface::Sampler sampler(field);
     double const middle = surface.IsLoop() ? 1.0 / 3.0 : 0.5;
-    Wanted wanted;
+    PlaceList wanted;
     for (Index face = 0; face < field.GetRefinedCage().GetNumFaces(); ++face) {
         sampler.Bind(face);
         auto const here = sampler.EvaluateHere(middle, middle);
@@ -49,13 +49,13 @@ Wanted SampleField(engine::Scene const& scene, Form const& form, Factor factor) 
     return wanted;
 }
 
-Form Match(engine::Scene const& scene, Wanted const& wanted) {
+Values MatchAtPlaces(engine::Scene const& scene, PlaceList const& wanted) {
     auto const refiner = test::MakeRefiner(scene, 0);
     return eval::MatchPlaces(scene.cage, eval::LimitSurface(*refiner), scene.positions, wanted,
-                             kLevels);
+                             kPlaceLevels);
 }
 
-double FindRelativeError(Form const& found, Form const& expected) {
+double FindRelativeError(Values const& found, Values const& expected) {
     Eigen::Map<Eigen::VectorXd const> const a(found.data(),
                                               static_cast<Eigen::Index>(found.size())),
         b(expected.data(), static_cast<Eigen::Index>(expected.size()));
@@ -76,19 +76,19 @@ std::vector<engine::Scene> MakePlaceMeshes() {
 // No smoothness helps here: values of a random form turn in every face.
 TEST(PlaceMatch, AnyFormComesBackFromItsLimitField) {
     for (engine::Scene const& scene : MakePlaceMeshes()) {
-        Form const form = MakeRandomForm(scene);
-        Wanted const wanted = SampleField(scene, form, [](bool) { return 1.0; });
-        EXPECT_LT(FindRelativeError(Match(scene, wanted), form), 1e-7) << scene.name;
+        Values const form = MakeRandomForm(scene);
+        PlaceList const wanted = SampleField(scene, form, [](bool) { return 1.0; });
+        EXPECT_LT(FindRelativeError(MatchAtPlaces(scene, wanted), form), 1e-7) << scene.name;
     }
 }
 
 TEST(PlaceMatch, PlacesInIrregularFacesSayNothing) {
     engine::Scene const scene = test::LoadSpot();
-    Form const form = MakeRandomForm(scene);
+    Values const form = MakeRandomForm(scene);
     auto const right = [](bool) { return 1.0; };
     auto const wrongNearCorners = [](bool isRegular) { return isRegular ? 1.0 : 100.0; };
-    EXPECT_EQ(Match(scene, SampleField(scene, form, wrongNearCorners)),
-              Match(scene, SampleField(scene, form, right)));
+    EXPECT_EQ(MatchAtPlaces(scene, SampleField(scene, form, wrongNearCorners)),
+              MatchAtPlaces(scene, SampleField(scene, form, right)));
 }
 
 // What a vector has across the surface no tangent field has.
@@ -97,23 +97,23 @@ TEST(PlaceMatch, PartsAcrossTheSurfaceDoNotCount) {
     auto const refiner = test::MakeRefiner(scene, 0);
     eval::LimitSurface const surface(*refiner);
     eval::FaceTree tree(surface, scene.positions, 3);
-    Form const form = MakeRandomForm(scene);
-    Wanted wanted = SampleField(scene, form, [](bool) { return 1.0; });
+    Values const form = MakeRandomForm(scene);
+    PlaceList wanted = SampleField(scene, form, [](bool) { return 1.0; });
     for (auto& [at, vector, area] : wanted) {
         tree.Bind(at.face);
         vector += 3.0 * eval::EvaluateSample(tree, at.domain, at.s, at.t).normal;
     }
-    EXPECT_LT(FindRelativeError(Match(scene, wanted), form), 1e-7);
+    EXPECT_LT(FindRelativeError(MatchAtPlaces(scene, wanted), form), 1e-7);
 }
 
 // A gradient has no curl: where there are no places it goes on without.
 TEST(PlaceMatch, WhatPlacesLeaveOpenIsFilledInWithLittleCurl) {
     engine::Scene const scene = test::MakeQuadSphere(2);
     auto const refiner = test::MakeRefiner(scene, 0);
-    Form const form = test::MakeCoordinateForm(refiner->GetLevel(0), scene.positions, 2);
-    Wanted wanted = SampleField(scene, form, [](bool) { return 1.0; });
+    Values const form = test::MakeCoordinateForm(refiner->GetLevel(0), scene.positions, 2);
+    PlaceList wanted = SampleField(scene, form, [](bool) { return 1.0; });
     std::erase_if(wanted, [](auto const& place) { return place.at.face % 20 == 0; });
-    EXPECT_LT(FindRelativeError(Match(scene, wanted), form), 0.02);
+    EXPECT_LT(FindRelativeError(MatchAtPlaces(scene, wanted), form), 0.02);
 }
 
 }  // namespace
