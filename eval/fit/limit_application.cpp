@@ -31,9 +31,9 @@ LimitApplication LimitApplication::Build(Far::TopologyRefiner const& refiner,
 }
 
 void LimitApplication::Apply(std::span<double const> x, int length, std::span<double> y) const {
-    if (auto const* const A = std::get_if<LimitOperator>(&_A)) return A->Apply(x, length, y);
+    if (auto const* const A = std::get_if<LimitOperator>(&_operator)) return A->Apply(x, length, y);
     // Rows add up to 1: relative to any of the points, floats keep the digits of a far mesh.
-    std::get<FixedTable>(_A).Apply(x, length, y, x.data());
+    std::get<FixedTable>(_operator).Apply(x, length, y, x.data());
 }
 
 }  // namespace limn::eval

@@ -16,7 +16,7 @@ public:
     /// The name of A's table among those that an evaluator counts.
     static constexpr char const* kTable = "A";
 
-    LimitApplication(LimitOperator A) : _A(std::move(A)) {}
+    LimitApplication(LimitOperator A) : _operator(std::move(A)) {}
 
     /// \param evaluator  null: none. It outlives this
     /// \throws Error     as LimitOperator::Build
@@ -29,9 +29,9 @@ public:
     void Apply(std::span<double const> x, int length, std::span<double> y) const;
 
 private:
-    explicit LimitApplication(FixedTable A) : _A(std::move(A)) {}
+    explicit LimitApplication(FixedTable A) : _operator(std::move(A)) {}
 
-    std::variant<LimitOperator, FixedTable> _A;
+    std::variant<LimitOperator, FixedTable> _operator;
 };
 
 }  // namespace limn::eval

@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(Evaluator, IsNearTheDoublesAndCountsItsApplications) {
     // Far from the origin, where a coordinate in float would be off by more than is allowed.
-    std::string mesh, other;
+    std::string mesh;
     for (std::string const& line : Lines(test::ReadText(test::ScenePath("spot/spot.obj")))) {
         std::string moved = line;
         if (line.starts_with("v ")) {
