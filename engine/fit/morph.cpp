@@ -10,7 +10,7 @@ namespace limn::engine {
 Morph::Morph(Model const& from, Model const& to, MorphOptions const& options)
     : _to(to),
       _options(options),
-      _A(eval::LimitApplication::Build(to.GetRefiner(), options.rule, options.evaluator)),
+      _operator(eval::LimitApplication::Build(to.GetRefiner(), options.rule, options.evaluator)),
       _positions(from.GetPositions()) {
     RequireSameFaces(from, to, "a morph");
     for (MorphStep const& step : options.steps) _keptAtEnd *= step.rate;
@@ -20,7 +20,7 @@ Morph::Morph(Model const& from, Model const& to, MorphOptions const& options)
 
 void Morph::TakeStep(size_t step, std::vector<double>& positions) const {
     auto const [detail, rate] = _options.steps[step];
-    eval::MorphStep(_A, 3, detail, rate, _to.GetPositions(), positions);
+    eval::MorphStep(_operator, 3, detail, rate, _to.GetPositions(), positions);
 }
 
 /// Goes all the way beforehand, to know what is left at its end.

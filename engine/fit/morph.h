@@ -50,7 +50,7 @@ private:
 
     Model _to;
     MorphOptions _options;
-    eval::LimitApplication _A;
+    eval::LimitApplication _operator;
     size_t _numMade = 0;
     double _kept = 1.0, _keptAtEnd = 1.0;           // products of rates
     std::vector<double> _positions, _rest, _frame;  // Q_k, Q_N - M, the frame where that differs

@@ -60,12 +60,12 @@ LengthCounts CountLengths(RankedSymbols const& symbols, int maxLength) {
     leaves[numLeaves] = kNone;
     std::fill_n(nodes.begin(), numNodes + 1, kNone);
     size_t leaf = 0, node = 0;
-    for (uint16_t made = 0; made < numNodes; ++made) {
+    for (size_t made = 0; made < numNodes; ++made) {
         uint32_t sum = 0;
         for (int child = 0; child < 2; ++child) {
             bool const isLeaf = leaves[leaf] <= nodes[node];
             sum += isLeaf ? leaves[leaf] : nodes[node];
-            parents[isLeaf ? leaf : numLeaves + node] = made;
+            parents[isLeaf ? leaf : numLeaves + node] = static_cast<uint16_t>(made);
             leaf += isLeaf ? 1 : 0;
             node += isLeaf ? 0 : 1;
         }

@@ -91,10 +91,9 @@ TEST(Morph, RefusesMoreFramesThanSteps) {
 }
 
 TEST(Morph, RefusesAnExactEndThatNoStepBringsNearer) {
-    auto const [from, to] = MakeEnds();
+    auto const ends = MakeEnds();
     engine::MorphOptions const options{.steps = Repeat(3, {2, 1.0}), .endsExactly = true};
-    EXPECT_EQ(test::CodeOf([&, &from = from, &to = to] { Morph(from, to, options); }),
-              ErrorCode::BadOption);
+    EXPECT_EQ(test::CodeOf([&] { Morph(ends.first, ends.second, options); }), ErrorCode::BadOption);
 }
 
 TEST(Morph, RefusesAnotherTopologyAndNamesTheFace) {
