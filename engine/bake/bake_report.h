@@ -19,7 +19,8 @@ struct BakeOutput {
     int tile = 1001, width = 0, height = 0;
     bool wasSkipped = false;
     std::optional<std::array<double, 3>> origin;  ///< taken off positions, where asked for
-    TangentialPart leftOut;                       ///< of displacements along the normal
+    bool isAlongNormal = false;                   ///< displacements are written along the normal
+    TangentialPart leftOut;                       ///< of them, where samples were looked at
     float min = 0.0f, max = 0.0f;                 ///< over covered texels, all channels
 };
 

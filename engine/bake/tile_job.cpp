@@ -22,6 +22,7 @@ TileJob::TileJob(int tile, StripBaker& baker, std::vector<FileLayout> const& fil
         output.width = options.width;
         output.height = options.height;
         output.origin = file.FindOrigin();
+        output.isAlongNormal = std::ranges::any_of(file.maps, &MapTraits::isAlongNormal);
         output.min = std::numeric_limits<float>::infinity();
         output.max = -output.min;
         _sinks.push_back(destination.Open(file, output));

@@ -185,9 +185,10 @@ void AddToReport(nlohmann::json& report, engine::BakeOutput const& output,
         entry["origin"] = *output.origin;
         if (!report.contains("origin")) report["origin"] = *output.origin;  // the first mesh's
     }
-    if (output.leftOut.count > 0) {
-        entry["tangential_rms"] = output.leftOut.GetRms();
-        entry["tangential_max"] = output.leftOut.max;
+    if (output.isAlongNormal) {
+        bool const isKnown = output.leftOut.count > 0;
+        entry["tangential_rms"] = isKnown ? nlohmann::json(output.leftOut.GetRms()) : nullptr;
+        entry["tangential_max"] = isKnown ? nlohmann::json(output.leftOut.max) : nullptr;
     }
     report["outputs"].push_back(std::move(entry));
     for (std::string const& preview : output.previews) report["previews"].push_back(preview);

@@ -81,41 +81,50 @@ void WarnOfSingular(Context& context, std::string const& path,
         path, first->firstVertex, first->numVertices, kSingular, others));
 }
 
+/// What exceeds a bound, with as many digits as tell the two apart.
+std::string ShowBeyond(double value, double bound) {
+    std::string text;
+    for (int digits = 2; digits <= 17; ++digits) {
+        text = fmt::format("{:.{}g}", value, digits);
+        if (text != fmt::format("{:.{}g}", bound, digits)) break;
+    }
+    return text;
+}
+
 /// Why the tolerance was missed, and what helps, in one line.
 std::string Explain(std::string const& path, engine::FitResult const& result, double tolerance) {
     for (auto const& component : result.report.singularComponents) {
         if (component.isSolved) continue;
         return fmt::format(
-            "{}: the component of vertex {} ({} vertices) {}, and its vertices are {:.2g} of the "
+            "{}: the component of vertex {} ({} vertices) {}, and its vertices are {} of the "
             "diagonal off what a limit "
-            "surface can reach (tolerance {:.2g}); use --alpha 0.5",
-            path, component.firstVertex, component.numVertices, kSingular, component.defect,
-            tolerance);
+            "surface can reach (tolerance {:g}); use --alpha 0.5",
+            path, component.firstVertex, component.numVertices, kSingular,
+            ShowBeyond(component.defect, tolerance), tolerance);
     }
     for (size_t i = 0; i < result.primvars.size(); ++i) {
         if (result.report.converged && !result.primvars[i].converged) {
             return fmt::format(
-                "{}: the primvar '{}' missed the tolerance {:.2g}: {:.2g} after {} applications of "
-                "A",
-                path, result.mesh.primvars[i].name, tolerance, result.primvars[i].residual,
-                result.primvars[i].iterations);
+                "{}: the primvar '{}' missed the tolerance {:g}: {} after {} applications of A",
+                path, result.mesh.primvars[i].name, tolerance,
+                ShowBeyond(result.primvars[i].residual, tolerance), result.primvars[i].iterations);
         }
     }
     if (result.report.converged) {
         return fmt::format(
             "{}: the limit of the result, its coordinates rounded to {}, misses vertex {} by "
-            "{:.2g} of the diagonal; the tolerance is {:.2g}{}",
+            "{} of the diagonal; the tolerance is {:g}{}",
             path, kPrecisionWords.GetWord(result.precision), result.certificate.worstVertex,
-            result.certificate.max, tolerance,
+            ShowBeyond(result.certificate.max, tolerance), tolerance,
             result.precision == Precision::Float ? "; use --precision double" : "");
     }
     return fmt::format(
-        "{}: the residual is {:.2g} of the diagonal after {} applications of A, worst at vertex "
-        "{}; the tolerance is {:.2g} and "
+        "{}: the residual is {} of the diagonal after {} applications of A, worst at vertex "
+        "{}; the tolerance is {:g} and "
         "A's smallest eigenvalue about {:.2g}; use --max-iterations, --method direct or --alpha "
         "0.5",
-        path, result.report.residual, result.report.iterations, result.report.worstVertex,
-        tolerance, result.lambdaMin);
+        path, ShowBeyond(result.report.residual, tolerance), result.report.iterations,
+        result.report.worstVertex, tolerance, result.lambdaMin);
 }
 
 /// The mesh and, where wanted, A.

@@ -29,14 +29,15 @@ public:
         nlohmann::json& _json;
     };
 
-    /// Opens the file before the work, so that a report that cannot be written is known before
-    /// there is output.
+    /// Opens a file before the work, so that a report that cannot be written is known before there
+    /// is output. A pipe or device is opened when the report is written: what opens one has to
+    /// write to it, and after a usage error there is no report.
     ///
     /// \param path    `-` for stdout; empty for none
     /// \throws Error  Io
     explicit Report(std::string const& path);
 
-    bool IsWanted() const { return _goesToStdout || _file; }
+    bool IsWanted() const { return !_path.empty(); }
 
     Access Open() { return Access(*this); }
 
@@ -48,11 +49,13 @@ public:
     void WriteAndAbandonFiles(nlohmann::json const& more);
 
 private:
-    void WriteLocked(nlohmann::json const& more);
+    bool GoesToStdout() const { return _path == "-"; }
+    void WriteLocked(nlohmann::json const& more, engine::PipeReader reader);
 
     std::timed_mutex _mutex;
     nlohmann::json _json;
-    bool _goesToStdout, _isWritten = false;
+    bool _isWritten = false;
+    std::string _path;
     std::unique_ptr<engine::AtomicFile> _file;
 };
 

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <set>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -46,10 +49,16 @@ public:
 private:
     void ReadKey(std::string const& key, Json const& value, CurvatureEdit& edit) const {
         if (key == "filter") return ReadFilter(value, edit);
+        std::set<Index> setVertices;
         auto const forEach = [&](size_t numKeys, auto add) {
             RequireList(key, value);
             for (Json const& entry : value) {
-                add(VertexOf(key, entry), entry);
+                Index const vertex = VertexOf(key, entry);
+                // What is set twice would keep the last value, and nobody would know.
+                bool const isSetTwice =
+                    key.starts_with("set_") && !setVertices.insert(vertex).second;
+                if (isSetTwice) Refuse(fmt::format("'{}' names vertex {} twice", key, vertex));
+                add(vertex, entry);
                 CheckKeys(key, entry, numKeys);
             }
         };
@@ -108,13 +117,22 @@ private:
     }
 
     Json Parse(std::string_view text) const {
-        auto const limitDepth = [&](int depth, Json::parse_event_t, Json&) {
+        std::vector<std::set<std::string>> keys;  // of the objects that are being read
+        auto const check = [&](int depth, Json::parse_event_t event, Json& parsed) {
             if (depth > kDeepest)
                 Refuse(fmt::format("values are nested more than {} deep", kDeepest));
+            if (event == Json::parse_event_t::object_start) keys.emplace_back();
+            if (event == Json::parse_event_t::object_end) keys.pop_back();
+            // Of equal keys a JSON object would keep the last, and nobody would know.
+            bool const isDoubled = event == Json::parse_event_t::key &&
+                                   !keys.back().insert(parsed.get<std::string>()).second;
+            if (isDoubled)
+                Refuse(fmt::format("key {} stands twice in one object",
+                                   TextScanner::Quote(parsed.get<std::string>())));
             return true;
         };
         try {
-            return Json::parse(text, limitDepth);
+            return Json::parse(text, check);
         } catch (Json::parse_error const& error) {
             auto const line = std::count(text.begin(), text.begin() + GetPlace(error, text), '\n');
             Refuse(fmt::format("line {} is no JSON", line + 1));

@@ -64,10 +64,16 @@ std::optional<int> FindOwnDescriptor(std::string const& path) {
 
 /// Opens what is no file. A descriptor of this process is shared rather than opened anew, so that
 /// it goes on where it is, and appends if it does.
-Descriptor OpenStream(std::string const& path) {
+Descriptor OpenStream(std::string const& path, PipeReader reader) {
     if (auto const number = FindOwnDescriptor(path))
         return Descriptor(::fcntl(*number, F_DUPFD_CLOEXEC, 3));
-    return Descriptor(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
+    int const whether = reader == PipeReader::MustBeThere ? O_NONBLOCK : 0;
+    Descriptor stream(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | whether));
+    if (stream.IsOpen() && whether != 0) {  // for the opening alone
+        int const flags = ::fcntl(stream.Get(), F_GETFL);
+        ::fcntl(stream.Get(), F_SETFL, flags & ~O_NONBLOCK);
+    }
+    return stream;
 }
 
 // ---- Temporaries
@@ -165,12 +171,13 @@ OutputKind FindOutputKind(std::string const& path) {
     return isNull ? OutputKind::Null : OutputKind::Stream;
 }
 
-AtomicFile::AtomicFile(std::string const& path) : _path(path), _pathToWrite(path) {
+AtomicFile::AtomicFile(std::string const& path, PipeReader reader)
+    : _path(path), _pathToWrite(path) {
     if (auto const file = FindFile(path)) {
         _target = file->string();
         OpenTemporary();
     } else {
-        _file = OpenStream(path);
+        _file = OpenStream(path, reader);
     }
     if (!_file.IsOpen()) ThrowIoError(path, "cannot be written");
 }

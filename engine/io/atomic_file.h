@@ -21,6 +21,9 @@ enum class OutputKind {
 
 OutputKind FindOutputKind(std::string const& path);
 
+/// What to do where an output is a pipe that nobody reads yet.
+enum class PipeReader { AwaitedForEver, MustBeThere };
+
 /// A file that appears complete under its name or not at all: written to a temporary in the same
 /// folder, flushed to the disk, then renamed. Where the path is a link, the file that it leads to
 /// appears, and the link stays. What is no file is never replaced: bytes go through it as they
@@ -34,11 +37,10 @@ OutputKind FindOutputKind(std::string const& path);
 /// Threads  one at a time for each file; any for different ones.
 class AtomicFile {
 public:
-    /// Makes all folders of the path that are missing. Waits where the path is a pipe that nobody
-    /// reads.
+    /// Makes all folders of the path that are missing.
     ///
     /// \throws Error  Io: no permission, the path is a folder, a name beyond 255 bytes, ...
-    explicit AtomicFile(std::string const& path);
+    explicit AtomicFile(std::string const& path, PipeReader reader = PipeReader::AwaitedForEver);
 
     /// Unless committed, removes the temporary, and the folders that this process has made for it
     /// and that are empty now.

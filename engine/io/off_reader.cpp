@@ -140,6 +140,7 @@ private:
 
     void ReadFaces(size_t count) {
         auto& cage = _scene.cage;
+        SkippedLines coloured;
         for (size_t i = 0; i < count; ++i) {
             NextContentLine(fmt::format("face {} of {}", i, count).c_str());
             size_t const size = Count("a face's number of corners");
@@ -155,7 +156,13 @@ private:
             }
             cage.faceSizes.push_back(static_cast<int>(size));
             _scene.faceLines.push_back(_scan.GetLineNumber());
+            if (!_scan.AtEndOfLine()) coloured.Add(_scan.Word(), _scan.GetLineNumber());
         }
+        if (coloured.GetCount() == 0) return;
+        _scene.warnings.push_back(
+            fmt::format("{}:{}: {} of faces with more than their corners, as colours, which is not "
+                        "read; colours of vertices are (COFF)",
+                        _scene.path, coloured.GetFirstLine(), coloured.DescribeCount()));
     }
 
     void NoteRest() {

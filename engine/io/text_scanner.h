@@ -21,8 +21,8 @@ namespace limn::engine {
 /// CR or CR. It copies nothing but lines that are joined. Errors carry "FILE:LINE: ".
 class TextScanner {
 public:
-    /// What a backslash at the end of a line means. One behind a '#' belongs to a comment and means
-    /// nothing.
+    /// What a backslash at the end of a line, or before blanks there, means. One behind a '#'
+    /// belongs to a comment and means nothing.
     enum class Backslash { IsText, JoinsLines };
 
     /// \throws Error  BadMesh: UTF-16
@@ -40,7 +40,7 @@ public:
         if (_next == _text.size()) return false;
         _line = TakeLine();
         _lineNumber = _numLines;
-        if (_joinsLines && IsContinued(_line)) JoinLines();
+        if (_joinsLines) JoinLines();
         return true;
     }
 
@@ -174,15 +174,21 @@ private:
 
     size_t Find(char c) const { return std::min(_text.find(c, _next), _text.size()); }
 
-    static bool IsContinued(std::string_view line) {
-        return !line.empty() && line.back() == '\\' && line.find('#') == std::string_view::npos;
+    /// The place of the backslash that continues a line; npos without one.
+    static size_t FindContinuation(std::string_view line) {
+        size_t last = line.size();
+        while (last > 0 && IsSpace(line[last - 1])) --last;
+        bool const isContinued = last > 0 && line[last - 1] == '\\' && line.find('#') == line.npos;
+        return isContinued ? last - 1 : line.npos;
     }
 
-    /// The current line with those that continue it; a blank stands for each backslash.
+    /// Makes the current line one with those that continue it; a blank stands for each backslash.
     void JoinLines() {
+        size_t end = FindContinuation(_line);
+        if (end == _line.npos) return;
         _joined.clear();
-        while (IsContinued(_line)) {
-            _joined.append(_line, 0, _line.size() - 1).append(" ");
+        for (; end != _line.npos; end = FindContinuation(_line)) {
+            _joined.append(_line, 0, end).append(" ");
             _line = _next == _text.size() ? std::string_view() : TakeLine();
         }
         _line = _joined.append(_line);

@@ -7,6 +7,7 @@
 
 #include "engine/scene/coincidence.h"
 #include "engine/scene/parity_sets.h"
+#include "engine/scene/weld.h"
 
 namespace limn::engine {
 
@@ -183,10 +184,13 @@ private:
         }
         if (coincident.count == 0) return;
         coincident.line = LineOf(_level.GetVertexFaces(coincident.element)[0]);
+        // Where nothing can be joined Weld says why.
+        bool const isCurable = CanWeld(_model.GetCage(), _model.GetPositions(), 0.0);
         coincident.message = fmt::format(
             "{} boundary vertices coincide with others, first vertex {} with {}: sheets that only "
-            "touch come apart as they are subdivided; `weld` 0 joins them",
-            coincident.count, coincident.element, second);
+            "touch come apart as they are subdivided; `weld` 0 {}",
+            coincident.count, coincident.element, second,
+            isCurable ? "joins them" : "can join none of them as they are");
         _defects.push_back(coincident);
     }
 

@@ -24,14 +24,18 @@ constexpr double kRangeSlack = 1e-4;
 
 struct TextureTiles::Box {
     double minU, maxU, minV, maxV;
+    double rounding = 0.0;  // by which it has been widened
 
     double GetSize() const { return std::max(maxU - minU, maxV - minV); }
+
+    /// True where rounding is more than a tile, so that no texel finds its place.
+    bool IsLost() const { return rounding > 1.0; }
 
     /// By the rounding of numbers as large as these.
     Box Widen() const {
         double const u = kRounding * std::max(std::abs(minU), std::abs(maxU)),
                      v = kRounding * std::max(std::abs(minV), std::abs(maxV));
-        return {minU - u, maxU + u, minV - v, maxV + v};
+        return {minU - u, maxU + u, minV - v, maxV + v, std::max(u, v)};
     }
 };
 
@@ -84,7 +88,7 @@ bool TextureTiles::HoldsAll(UVBounds const& bounds) const {
 
 /// Found: the box lies in tiles that are not there yet, all of `tiles`.
 TextureTiles::Verdict TextureTiles::Judge(Box const& box, Range const& tiles, bool isLast) const {
-    if (HoldsAll(tiles)) return Verdict::Nothing;
+    if (HoldsAll(tiles) || (isLast && box.IsLost())) return Verdict::Nothing;
     bool const isSure = tiles.IsOne() && box.minU >= tiles.firstU + _marginU &&
                         box.maxU <= tiles.firstU + 1 - _marginU &&
                         box.minV >= tiles.firstV + _marginV &&
@@ -140,20 +144,21 @@ bool TextureTiles::SearchPiece(Piece const& piece, double x, double y, double ha
                                Ask& ask) {
     bool const isOutside = _isTriangle && x + y + 2 * _tree.GetCentre() - 2 * half > 1.0;
     if (isOutside) return false;
-    double low[2], high[2];
+    double low[2], high[2], rounding[2];
     for (int k = 0; k < 2; ++k) {
         auto const value = _isTriangle
                                ? eval::EvaluateTrianglePolynomial(piece.coefficients[k], x, y)
                                : eval::EvaluateQuadPolynomial(piece.coefficients[k], x, y);
-        double const reach =
-            (std::abs(value[1]) + std::abs(value[2])) * half + piece.bounds[k].GetStray(half) +
-            kRounding * (std::abs(piece.origin[k]) + std::abs(piece.coefficients[k][0]) +
-                         piece.bounds[k].reach);
+        rounding[k] = kRounding * (std::abs(piece.origin[k]) + std::abs(piece.coefficients[k][0]) +
+                                   piece.bounds[k].reach);
+        double const reach = (std::abs(value[1]) + std::abs(value[2])) * half +
+                             piece.bounds[k].GetStray(half) + rounding[k];
         low[k] = piece.origin[k] + value[0] - reach;
         high[k] = piece.origin[k] + value[0] + reach;
     }
-    Box const box{low[0], high[0], low[1], high[1]};
-    Verdict const verdict = ask(box, IsLast(box, depth));
+    Box const box{low[0], high[0], low[1], high[1], std::max(rounding[0], rounding[1])};
+    // A part of the piece is as lost as the whole.
+    Verdict const verdict = ask(box, box.IsLost() || IsLast(box, depth));
     if (verdict != Verdict::Unclear) return verdict == Verdict::Found;
     double const h = 0.5 * half;
     for (double const dy : {-h, h}) {

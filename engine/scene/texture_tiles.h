@@ -21,7 +21,8 @@ struct UVBounds {
 /// over a border by less than half a texel reaches no sample, and does not count.
 ///
 /// Search   squares of a face's domain are quartered until their bounds lie in one tile, in tiles
-///          that are known already, or in none.
+///          that are known already, or in none. Pieces of such numbers that doubles cannot tell
+///          tiles apart reach none.
 class TextureTiles {
 public:
     /// \param surface        of the texture coordinates; kept by reference, as are these

@@ -69,9 +69,10 @@ enum class Apart : char { No, TwiceInAFace, ThirdFace };
 /// Which vertices become one.
 class Joining {
 public:
-    Joining(Scene const& scene, double tolerance) : _cage(scene.cage) {
+    Joining(ControlMesh const& cage, std::span<double const> positions, double tolerance)
+        : _cage(cage) {
         std::vector<Index> const self = Identity();
-        _groupOf = GroupCoincident(scene.positions, FindBoundary(self), tolerance);
+        _groupOf = GroupCoincident(positions, FindBoundary(self), tolerance);
         _groupSizes.assign(self.size(), 0);
         for (Index group : _groupOf) ++_groupSizes[group];
         _apart.assign(self.size(), Apart::No);
@@ -408,9 +409,17 @@ void CheckTolerance(double tolerance) {
 Scene Weld(Scene scene, double tolerance) {
     CheckTolerance(tolerance);
     NamingMesh(scene.path, [&] { CheckScene(scene); });
-    Joining const joining(scene, tolerance);
+    Joining const joining(scene.cage, scene.positions, tolerance);
     Welder(scene, joining).Weld(tolerance);
     return scene;
+}
+
+bool CanWeld(ControlMesh const& cage, std::span<double const> positions, double tolerance) {
+    auto const joined = Joining(cage, positions, tolerance).GetJoined();
+    for (size_t vertex = 0; vertex < joined.size(); ++vertex) {
+        if (joined[vertex] != static_cast<Index>(vertex)) return true;
+    }
+    return false;
 }
 
 }  // namespace limn::engine

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+
 #include "engine/scene/scene.h"
 
 namespace limn::engine {
@@ -25,5 +27,10 @@ namespace limn::engine {
 /// \throws Error     BadMesh: what far_ext::Validate refuses, positions that are missing or not
 ///                   finite; BadOption: a tolerance below 0, or too large for GroupCoincident
 Scene Weld(Scene scene, double tolerance);
+
+/// Whether Weld would join any vertices, rather than leave all apart.
+///
+/// \pre  a mesh that could be built
+bool CanWeld(far_ext::ControlMesh const& cage, std::span<double const> positions, double tolerance);
 
 }  // namespace limn::engine

@@ -54,16 +54,21 @@ PaintedWidths PaintedWidths::Read(std::string const& path, double white, Model c
     widths._white = white;
     widths._tileOfFace = FindTiles(model);
     bool const hasTiles = HasUdimToken(path);
-    for (int number : std::set<int>(widths._tileOfFace.begin(), widths._tileOfFace.end())) {
-        if (number < 0) continue;
+    std::set<int> numbers(widths._tileOfFace.begin(), widths._tileOfFace.end());
+    numbers.erase(-1);
+    for (int number : numbers) {
         std::string const file = ReplaceUdimToken(path, number);
         bool const isWanted = hasTiles ? std::filesystem::exists(file) : number == 1001;
         if (isWanted) widths.ReadTile(file, number);
     }
     if (widths._tiles.empty()) {
-        throw Error(ErrorCode::Io, fmt::format("{}: no face lies in tile 1001{}", path,
-                                               hasTiles ? " or in a tile that has an image"
-                                                        : "; name the others' images with <UDIM>"));
+        // Images of tiles may be missing; the one of tile 1001 cannot help a mesh that lies
+        // elsewhere.
+        bool const isFileMissing = hasTiles && !numbers.empty();
+        throw Error(isFileMissing ? ErrorCode::Io : ErrorCode::BadMesh,
+                    fmt::format("{}: no face lies in tile 1001{}", path,
+                                hasTiles ? " or in a tile that has an image"
+                                         : "; name the others' images with <UDIM>"));
     }
     return widths;
 }

@@ -17,8 +17,8 @@ public:
     ///               without it tile 1001 alone is painted, and the rest of the surface has no
     ///               width
     /// \param white  the width of the value 1
-    /// \throws Error BadMesh: no texture coordinates, an image that has a value that is negative or
-    ///               not finite.  Io
+    /// \throws Error BadMesh: no texture coordinates, or none in a tile that can be painted; an
+    ///               image that has a value that is negative or not finite.  Io
     static PaintedWidths Read(std::string const& path, double white, Model const& model);
 
     double GetLargest() const { return _largest; }

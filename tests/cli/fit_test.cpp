@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "engine/io/mesh_reader.h"
 #include "support/program/cli.h"
 #include "support/values.h"
@@ -101,6 +103,20 @@ TEST_F(CliFit, OffTheRangeItIsStatus4AndNothingIsWritten) {
 
     ExpectError(Limn({"fit", mesh, "-o", folder / "kept.obj", "--keep-result"}), 4, "--alpha 0.5");
     EXPECT_EQ(engine::ReadMesh(folder / "kept.obj").cage.numVertices, 8);
+}
+
+// A cube of edge 2, whose diagonal is 2 sqrt(3), with an alternating part of 1.001e-6 of that.
+TEST_F(CliFit, WhatIsJustBeyondTheToleranceIsToldApartFromIt) {
+    std::string text;
+    for (int i = 0; i < 8; ++i) {
+        int const x = i & 1 ? 1 : -1, y = i & 2 ? 1 : -1, z = i & 4 ? 1 : -1;
+        text += fmt::format("v {} {} {}\n", x + x * y * z * 1.001e-6 * std::sqrt(12.0), y, z);
+    }
+    std::string const mesh = folder.Write(
+        "a.obj", text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+    ExpectError(
+        Limn({"fit", mesh, "-o", folder / "b.obj"}), 4,
+        "are 1.001e-06 of the diagonal off what a limit surface can reach (tolerance 1e-06)");
 }
 
 TEST_F(CliFit, AlphaWritesTheFinerMeshUnlessTold) {

@@ -14,20 +14,17 @@
 #include "engine/bake/bake.h"
 #include "engine/differential/differential.h"
 #include "engine/evaluate/evaluate.h"
-#include "engine/field/field.h"
-#include "engine/fit/bands.h"
 #include "engine/fit/fit.h"
-#include "engine/fit/morph.h"
-#include "engine/io/mesh_reader.h"
 #include "engine/measure/measure.h"
 #include "engine/scene/mesh_info.h"
 #include "engine/scene/refine.h"
 #include "engine/scene/weld.h"
-#include "engine/smooth/smooth.h"
 #include "fuzz/choices.h"
 #include "fuzz/fuzzer.h"
 #include "fuzz/meshes.h"
+#include "fuzz/promises.h"
 #include "fuzz/same_scene.h"
+#include "fuzz/verbs.h"
 
 namespace limn::fuzz {
 
@@ -36,63 +33,6 @@ namespace {
 using engine::Job;
 using engine::Model;
 using engine::Scene;
-
-template <class Values>
-bool AreFinite(Values const& values) {
-    return std::ranges::all_of(values, [](auto value) { return std::isfinite(value); });
-}
-
-/// The room that limits may take: weights of subdivision may be negative, but only by little, so
-/// they stay within four times the box of the control points about its middle.
-class Hull {
-public:
-    explicit Hull(std::vector<double> const& points) {
-        for (int c = 0; c < 3; ++c) {
-            double low = points[c], high = points[c];
-            for (size_t i = c; i < points.size(); i += 3) {
-                low = std::min(low, points[i]);
-                high = std::max(high, points[i]);
-            }
-            _middle[c] = low / 2 + high / 2;
-            _reach[c] = 2 * (high - low);
-            _largest = std::max({_largest, std::abs(low), std::abs(high)});
-        }
-    }
-
-    double GetDiagonal() const { return std::hypot(_reach[0], _reach[1], _reach[2]) / 2; }
-
-    /// \param rounding  relative, of what made the points
-    template <class Number>
-    bool Holds(std::span<Number const> points, double rounding) const {
-        for (size_t i = 0; i < points.size(); ++i) {
-            double const distance = std::abs(static_cast<double>(points[i]) - _middle[i % 3]);
-            if (!(distance <= _reach[i % 3] + rounding * _largest)) return false;
-        }
-        return true;
-    }
-
-private:
-    double _middle[3], _reach[3], _largest = 0.0;
-};
-
-void RequireInHull(Model const& model, std::vector<double> const& points) {
-    Require(Hull(model.GetPositions()).Holds(std::span<double const>(points), 1e-9),
-            "limits lie within four times the hull of the control points");
-}
-
-/// Requires that a result is a mesh again, of finite positions.
-void RequireMesh(Scene scene) {
-    Require(scene.positions.size() == 3 * static_cast<size_t>(scene.cage.numVertices),
-            "a mesh has three coordinates per vertex");
-    Require(AreFinite(scene.positions), "positions of a result are numbers");
-    MustSucceed("a result is a mesh that can be read again",
-                [&] { return Model::Build(std::move(scene)); });
-}
-
-void RequirePositions(Model const& model, std::vector<double> const& positions) {
-    Require(positions.size() == model.GetPositions().size(), "a filter keeps every vertex");
-    Require(AreFinite(positions), "positions of a result are numbers");
-}
 
 // A verb each.
 
@@ -184,116 +124,6 @@ void Fit(Model const& model, Choices& choices, Job& job) {
     Require(!isSound || !result.report.converged ||
                 result.certificate.max <= 1.02 * options.tolerance + FindRounding(model),
             "on a sound mesh a solver that converged has solved for the limit");
-}
-
-void Filter(Model const& model, Choices& choices, Job& job) {
-    far_ext::LimitOptions const rule{.alpha = choices.Pick({0.0, 0.0, 0.5, 1.0})};
-    int const kind = choices.TakeInt(0, 2);
-    if (kind == 0) {
-        engine::DenoiseOptions const options{choices.TakeInt(0, 4), choices.TakeInt(1, 3), rule};
-        RequirePositions(model, engine::Denoise(model, options, job));
-        return;
-    }
-    if (kind == 1) {
-        int const first = choices.TakeInt(1, 4);
-        engine::SharpenOptions const options{first, choices.TakeInt(first, 6),
-                                             choices.TakeInt(1, 2), rule};
-        RequirePositions(model, engine::Sharpen(model, options, job));
-        return;
-    }
-    int const count = choices.TakeInt(1, 6);
-    auto const bands = engine::SplitIntoBands(model, count, rule, job);
-    Require(bands.bands.size() == static_cast<size_t>(count), "there are as many bands as asked");
-    std::vector<double> sum = bands.remainder;
-    double largest = 0.0;
-    for (auto const& band : bands.bands) {
-        for (size_t i = 0; i < sum.size(); ++i) {
-            sum[i] += band[i];
-            largest = std::max(largest, std::abs(band[i]));
-        }
-    }
-    RequirePositions(model, sum);
-    for (size_t i = 0; i < sum.size(); ++i) {
-        Require(std::abs(sum[i] - model.GetPositions()[i]) <= 1e-12 * largest,
-                "bands add up to the mesh");
-    }
-}
-
-void MorphTo(Model const& model, Choices& choices, Job& job) {
-    std::vector<double> positions = model.GetPositions();
-    for (double& coordinate : positions) coordinate *= choices.Pick({1.0, 2.0, -1.0, 0.5});
-    engine::MorphStep const step{choices.TakeInt(0, 3), choices.TakeShare()};
-    engine::MorphOptions const options{.steps = std::vector<engine::MorphStep>(3, step)};
-    engine::Morph morph(model, model.WithPoints(std::move(positions)), options);
-    for (int frame = 0; frame < 3; ++frame) RequirePositions(model, morph.MakeNext(job));
-}
-
-engine::FilterWidths ChooseWidths(Model const& model, Choices& choices) {
-    double const width = choices.Pick({0.1, 0.0, 0.5, 3.0});
-    switch (choices.TakeInt(0, 3)) {
-        case 1: {
-            engine::VertexWidths widths;
-            for (Index i = 0; i < model.GetCage().numVertices; ++i)
-                widths.sigmas.push_back(choices.TakeShare());
-            return widths;
-        }
-        case 2:
-            return engine::MakeLocalWidths(model, width);
-        case 3: {
-            auto const& vertices = model.GetCage().faceVertices;
-            return engine::EdgeWidths(model, {{{vertices[0], vertices[1]}, width}});
-        }
-        default:
-            return engine::ConstantWidth{width};
-    }
-}
-
-void Smooth(Model const& model, Choices& choices, Job& job) {
-    engine::SmoothOptions options{.levels = choices.TakeInt(1, 2)};
-    if (choices.TakeBool()) options.refinement = engine::SmoothRefinement::Bisect;
-    if (choices.TakeBool()) options.boundary = far_ext::BoundaryRule::Natural;
-    options.solver = choices.Pick({eval::CascadeSolver::ConjugateGradients,
-                                   eval::CascadeSolver::Exact, eval::CascadeSolver::Jacobi});
-    if (options.solver == eval::CascadeSolver::Jacobi) options.stop = engine::SweepsOnFinest{2};
-    options.constraint =
-        choices.Pick({engine::SmoothConstraint::None, engine::SmoothConstraint::Volume,
-                      engine::SmoothConstraint::Graph});
-    options.onCollapse = choices.Pick(
-        {engine::OnCollapse::Stop, engine::OnCollapse::LimitWidth, engine::OnCollapse::KeepResult});
-    options.keepsCreases = choices.TakeBool();
-    if (choices.TakeOneIn(4)) options.precision = Precision::Float;
-    auto const result = engine::Smooth(model, ChooseWidths(model, choices), options, job);
-    if (result.mesh) RequireMesh(*result.mesh);
-}
-
-std::vector<engine::FieldStrength> ChooseStrengths(Choices& choices, Index numElements) {
-    std::vector<engine::FieldStrength> strengths;
-    for (int count = choices.TakeInt(0, 3); count > 0; --count) {
-        Index const element = choices.TakeInt(0, numElements - 1);
-        strengths.push_back({element, choices.Pick({1.0, -1.0, 0.25, 1e3})});
-    }
-    return strengths;
-}
-
-void Design(Model const& model, Choices& choices, Job& job) {
-    engine::FieldOptions options;
-    options.sources = ChooseStrengths(choices, model.GetCage().numVertices);
-    options.vortices = ChooseStrengths(choices, model.GetCage().GetNumFaces());
-    options.isBalanced = !choices.TakeOneIn(8);
-    options.levels = choices.TakeInt(0, 2);
-    if (choices.TakeBool()) options.atBoundary = eval::AtBoundary::Normal;
-    for (int count = choices.TakeInt(0, 2); count > 0; --count) {
-        bool const isFace = choices.TakeBool();
-        Index const numElements =
-            isFace ? model.GetCage().GetNumFaces() : model.GetCage().numVertices;
-        Index const element = choices.TakeInt(0, numElements - 1);
-        options.wanted.push_back({isFace, element, {1.0, choices.TakeSigned(), 0.0}});
-    }
-    auto const field = engine::DesignField(model, options, job);
-    Require(AreFinite(field.form), "a form is made of numbers");
-    for (auto const& vector : field.vectors) Require(AreFinite(vector), "vectors are numbers");
-    for (auto const& vector : field.faceVectors) Require(AreFinite(vector), "vectors are numbers");
-    RequireMesh(field.mesh);
 }
 
 void MeasureSurface(Model const& model, Choices& choices, Job& job) {
@@ -405,8 +235,9 @@ Model ChooseModel(Choices& choices) {
 
 void RunVerb(Choices& choices) {
     static constexpr void (*kVerbs[])(Model const&, Choices&, Job&) = {
-        Bake,           Evaluate, Refine,  Fit,  Filter,    Smooth,   Design,
-        MeasureSurface, Bake,     MorphTo, Bake, WeldTwice, Describe, RefineInDifferentialSpace};
+        Bake,           Evaluate, Refine,   Fit,  Filter,    Smooth,   Design,
+        MeasureSurface, Bake,     MorphTo,  Bake, WeldTwice, Describe, RefineInDifferentialSpace,
+        SumBands,       Combine,  DrawLines};
     auto* const verb = choices.Pick(kVerbs);
     Model const model = ChooseModel(choices);
     // Some are interrupted, at whichever time they ask.

@@ -59,6 +59,7 @@ struct MapTraits {
     std::string optionText;              ///< its own options that affect pixels: "bands=4"
     std::optional<std::string> against;  ///< SHA-256 of the mesh that it leads to
     bool hasVectorOptions = false;       ///< isVector and space affect it, too
+    bool isAlongNormal = false;          ///< of displacements it has the part along the normal
 
     int GetNumChannels() const { return static_cast<int>(channels.size()); }
     /// "X,Y,Z"; empty where no origin, or 0, is taken off.

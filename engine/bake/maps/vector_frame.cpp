@@ -10,6 +10,7 @@ void VectorFrame::AddNeeds(MapTraits& traits) const {
     traits.quantity = needsTangents ? eval::Quantity::Tangents : eval::Quantity::Normal;
     traits.needsJacobian = needsTangents;
     traits.hasVectorOptions = true;
+    traits.isAlongNormal = !_isVector;
 }
 
 void VectorFrame::Put(SampleBlock const& block, size_t i, Eigen::Vector3d const& displacement,

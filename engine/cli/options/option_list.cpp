@@ -2,6 +2,7 @@
 #include "engine/cli/options/option_list.h"
 
 #include "engine/cli/options/choices.h"
+#include "engine/cli/options/offered_words.h"
 
 namespace limn::cli {
 
@@ -25,8 +26,13 @@ OptionEntry MakeOptionEntry(CLI::Option const& option) {
     entry.help = option.get_description();
     entry.group = option.get_group();
     entry.words = SplitChoices(entry.placeholder);
-    entry.value = FindValue(option, entry);
     entry.isList = option.get_delimiter() != '\0';
+    if (entry.words.empty()) {
+        OfferedWords const offered = FindOfferedWords(entry.longFlag);
+        entry.words = offered.words;
+        entry.isList |= offered.isList;
+    }
+    entry.value = FindValue(option, entry);
     if (entry.IsPositional()) entry.placeholder = option.get_name();
     return entry;
 }

@@ -19,11 +19,14 @@ struct OptionEntry {
     std::string placeholder;          ///< "INT from 0 to 10"; the name of a positional
     std::string help, group;
     Value value = Value::None;
-    std::vector<std::string> words{};
-    bool isList = false;  ///< separated by commas
+    std::vector<std::string> words{};  ///< that it takes: all there are, or some among others
+    bool isList = false;               ///< separated by commas
 
     bool IsPositional() const { return shortFlag.empty() && longFlag.empty(); }
     bool IsCommon() const { return group == kCommonGroup; }
+
+    /// True for a flag that a word may follow, behind '=': "--half=normal".
+    bool IsFlagWithWords() const { return value == Value::None && !words.empty(); }
 
     /// "-o, --output"
     std::string JoinFlags() const;

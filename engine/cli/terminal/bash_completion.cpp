@@ -14,11 +14,12 @@ constexpr char const* kBashHead = R"(# shellcheck shell=bash
 
 _limn() {
     local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} done='' words=''
+    local sign=''
     # Bash takes the = of --option=value for a word.
     if [[ $word == '=' ]]; then
-        word=''
+        word='' sign='='
     elif [[ $before == '=' ]]; then
-        before=${COMP_WORDS[COMP_CWORD - 2]}
+        before=${COMP_WORDS[COMP_CWORD - 2]} sign='='
     fi
     COMPREPLY=()
     case $COMP_CWORD:${COMP_WORDS[1]}:$before in
@@ -47,15 +48,17 @@ std::string JoinPatterns(std::string const& verb, OptionEntry const& option) {
     return fmt::format("{}", fmt::join(patterns, " | "));
 }
 
-/// What stands behind an option that takes a value: its words, else what bash finds.
+/// What stands behind an option that takes a value: its words, else what bash finds. Without a '='
+/// no flag has any, and the verb's own words follow.
 std::string DescribeBashValue(std::string const& verb, OptionEntry const& option) {
-    if (option.IsPositional() || option.value == OptionEntry::Value::None) return {};
+    bool const isFlag = option.value == OptionEntry::Value::None;
+    if (option.IsPositional() || (isFlag && !option.IsFlagWithWords())) return {};
     std::string const patterns = JoinPatterns(verb, option);
     if (option.words.empty()) return fmt::format("    {}) ;;\n", patterns);
-    std::string text =
-        fmt::format("    {})\n        words='{}'\n", patterns, fmt::join(option.words, " "));
+    std::string text = fmt::format("    {})\n        {}words='{}'\n", patterns,
+                                   isFlag ? "[[ ! $sign ]] || " : "", fmt::join(option.words, " "));
     if (option.isList) text += kBashList;
-    return text + "        ;;\n";
+    return text + (isFlag ? "        ;;&\n" : "        ;;\n");
 }
 
 /// What a verb takes where nothing is awaited: its options, or the words of its positional.

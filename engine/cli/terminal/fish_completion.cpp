@@ -18,18 +18,19 @@ std::string QuoteForFish(std::string_view text) {
     return quoted + "'";
 }
 
-/// What fish offers behind an option: words, nothing, or files.
+/// What fish offers behind an option: words, nothing, or files. Behind a flag that is one with '='
+/// only, without -x and -r.
 std::string DescribeFishValue(OptionEntry const& option) {
     using Value = OptionEntry::Value;
-    std::string const words = fmt::format("{}", fmt::join(option.words, " "));
+    std::string words = fmt::format("{}", fmt::join(option.words, " "));
+    if (option.isList) words = "(__fish_append , " + words + ")";
     switch (option.value) {
         case Value::None:
-            return {};
+            return option.IsFlagWithWords() ? " -f -a " + QuoteForFish(words) : "";
         case Value::Number:
             return " -x";
         case Value::Words:
-            return " -x -a " +
-                   QuoteForFish(option.isList ? "(__fish_append , " + words + ")" : words);
+            return " -x -a " + QuoteForFish(words);
         case Value::Other:
             return " -r";
     }

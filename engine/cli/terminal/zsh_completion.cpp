@@ -55,12 +55,13 @@ std::string DescribeZshValue(std::string_view name, OptionEntry const& option) {
     std::string const words = fmt::format("{}", fmt::join(option.words, " "));
     switch (option.value) {
         case Value::None:
-            return {};
-        case Value::Number:
-            return fmt::format(":{}: ", name);
+            if (!option.IsFlagWithWords()) return {};
+            [[fallthrough]];
         case Value::Words:
             return option.isList ? fmt::format(":{}: _values -s , {} {}", name, name, words)
                                  : fmt::format(":{}:({})", name, words);
+        case Value::Number:
+            return fmt::format(":{}: ", name);
         case Value::Other:
             return fmt::format(":{}:_files", name);
     }
@@ -70,10 +71,12 @@ std::string DescribeZshValue(std::string_view name, OptionEntry const& option) {
 /// Specs of _arguments, e.g. '*--size=[texels: N or WxH]:size:_files', one for each flag.
 std::string DescribeZshOption(OptionEntry const& option) {
     bool const takesValue = option.value != OptionEntry::Value::None;
+    // "=-[...]:": a value stands behind the sign at once; "::" in its place: or there is none.
+    char const* const longSign = takesValue ? "=" : option.IsFlagWithWords() ? "=-" : "";
     std::vector<std::string> specs;
     for (std::string const& flag : ListFlags({option})) {
-        char const* const sign = takesValue && flag.starts_with("--") ? "=" : "";
-        specs.push_back(QuoteForZsh("*" + flag + sign + Explain(option.help) +
+        specs.push_back(QuoteForZsh("*" + flag + (flag.starts_with("--") ? longSign : "") +
+                                    Explain(option.help) + (option.IsFlagWithWords() ? ":" : "") +
                                     DescribeZshValue(option.longFlag.substr(2), option)));
     }
     return fmt::format("{}", fmt::join(specs, " "));

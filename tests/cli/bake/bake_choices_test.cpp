@@ -268,6 +268,12 @@ TEST_F(Choices, WhatScalarDisplacementLeavesOutIsInTheReport) {
     EXPECT_NEAR(output["tangential_rms"].get<double>(), 0.5, 1e-6);
     EXPECT_NEAR(output["tangential_max"].get<double>(), 0.5, 1e-6);
     EXPECT_TRUE(Contains(Warning(), "--vector bakes all of it")) << Warning();
+    // A file that is left alone does not tell; an audit counts its samples all the same.
+    ASSERT_EQ(Bake(sheet, "a.exr", way + Words{"--skip-existing"}).status, 0);
+    EXPECT_TRUE(Report()["outputs"][0].at("tangential_rms").is_null());
+    EXPECT_TRUE(Report()["outputs"][0].at("tangential_max").is_null());
+    ASSERT_EQ(Bake(sheet, "a.exr", way + Words{"--skip-existing", "--audit"}).status, 0);
+    EXPECT_EQ(Report()["outputs"][0]["tangential_max"], output["tangential_max"]);
     ASSERT_EQ(Bake(sheet, "a.exr", way + Words{"--vector"}).status, 0);
     EXPECT_EQ(Warning(), "");
     EXPECT_FALSE(Report()["outputs"][0].contains("tangential_rms"));

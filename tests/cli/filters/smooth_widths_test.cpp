@@ -201,5 +201,20 @@ TEST_F(CliSmooth, TilesHaveImagesOfTheirOwn) {
     EXPECT_EQ(numAbove, 3 * 3);
 }
 
+TEST_F(CliSmooth, AMeshThatNoTileHoldsCannotBePainted) {
+    auto const run = [&](std::string const& image, double u) {
+        std::string const sheet = folder.Write(
+            "sheet.obj", fmt::format("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt {0} 0\nvt {0} 1\n"
+                                     "f 1/1 2/1 3/2 4/2\n",
+                                     u));
+        return Limn({"smooth", sheet, "-o", folder / "a.obj", "--levels", "1", "--width-texture",
+                     folder / image, "--width", "0.4"});
+    };
+    folder.Write("w.pgm", "P2 1 1 255\n255\n");
+    for (double u : {1e30, 1.5}) ExpectError(run("w.pgm", u), 3, "no face lies in tile 1001;");
+    ExpectError(run("w.<UDIM>.pgm", 1e30), 3, "no face lies in tile 1001 or in a tile");
+    ExpectError(run("w.<UDIM>.pgm", 1.5), 5, "in a tile that has an image");
+}
+
 }  // namespace
 }  // namespace limn

@@ -131,7 +131,8 @@ TEST(Completion, ZshKnowsEveryOptionOfEveryVerb) {
     ExpectAllFlags([&](CLI::App const& verb, std::string const& flag) {
         std::string const block = Between(script, "\n        " + verb.get_name() + ")", ";;");
         auto const has = [&](std::string const& text) {
-            return Contains(text, "'*" + flag + "[") || Contains(text, "'*" + flag + "=[");
+            return Contains(text, "'*" + flag + "[") || Contains(text, "'*" + flag + "=[") ||
+                   Contains(text, "'*" + flag + "=-[");
         };
         return has(block) || (Contains(block, "$common") && has(common));
     });
@@ -164,6 +165,23 @@ TEST(Completion, BashOffersMapsAfterACommaToo) {
     EXPECT_EQ(CompleteInBash({"limn", "bake", "--maps", "me"}), Words{"mean"});
     EXPECT_EQ(CompleteInBash({"limn", "bake", "--maps", "mean,no"}),
               (Words{"mean,normal", "mean,noise"}));
+}
+
+TEST(Completion, BashOffersWordsThatStandAmongOtherValues) {
+    Words const ranges{"p1", "full", "asinh"};
+    EXPECT_EQ(CompleteInBash({"limn", "bake", "--preview-range", ""}), ranges);
+    EXPECT_EQ(CompleteInBash({"limn", "measure", "--preview-range", "=", ""}), ranges);
+    EXPECT_EQ(CompleteInBash({"limn", "bake", "--origin", ""}), Words{"auto"});
+}
+
+TEST(Completion, BashOffersTheWordsOfAFlagBehindItsSignOnly) {
+    EXPECT_EQ(CompleteInBash({"limn", "bake", "--half", "=", "me"}), Words{"mean"});
+    EXPECT_EQ(CompleteInBash({"limn", "bake", "--half", "=", "mean,no"}),
+              (Words{"mean,normal", "mean,noise"}));
+    EXPECT_EQ(CompleteInBash({"limn", "measure", "--picture", "="}), (Words{"mean", "gaussian"}));
+    EXPECT_EQ(CompleteInBash({"limn", "bake", "--half", ""}), Words{});
+    EXPECT_EQ(CompleteInBash({"limn", "bake", "--half", "--previ"}),
+              (Words{"--preview", "--preview-legend", "--preview-range"}));
 }
 
 TEST(Completion, BashLeavesFilesAndNumbersToItself) {

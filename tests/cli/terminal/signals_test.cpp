@@ -143,6 +143,19 @@ TEST_F(Cli, PipeThatNobodyReadsCanBeInterrupted) {
     ExpectError(process.Wait(), 130, "interrupted");
 }
 
+TEST_F(Cli, PipeForAReportThatNobodyReadsCanBeInterrupted) {
+    std::string const pipe = folder / "r.json", mesh = folder / "mesh.obj";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    ASSERT_EQ(::mkfifo(mesh.c_str(), 0600), 0);
+    for (std::string const& input : {Shape("catmark_cube"), mesh}) {  // writes, or still reads
+        test::Process process(
+            {LIMN_PROGRAM, "refine", input, "-o", folder / "a.obj", "--report", pipe});
+        WaitUntilSignalsAreTaken(process);
+        process.Send(SIGINT);
+        ExpectError(process.Wait(), 130, "interrupted");
+    }
+}
+
 TEST_F(Cli, FullStderrThatNobodyReadsCanBeInterrupted) {
     std::string const pipe = folder / "pipe";
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);

@@ -79,6 +79,22 @@ TEST_F(Streams, ReportsGoThroughWhatIsNoFile) {
                 "'/dev/full' cannot be written: No space left on device");
 }
 
+TEST_F(Streams, APipeForAReportIsOpenedWhenThereIsOne) {
+    std::string const pipe = folder / "pipe.json";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    // Nobody reads: a run that waited would not end.
+    ExpectError(Limn({"measure", cube, "--highlight", "--report", pipe}), 2,
+                "name their beginning");
+    ExpectError(Limn({"refine", cube, "-o", cube, "--report", pipe}), 2, "is an input");
+    std::string heard;
+    std::thread reader([&] { heard = test::ReadText(pipe); });
+    Outcome const outcome = Limn({"info", folder / "none.obj", "--report", pipe});
+    reader.join();
+    EXPECT_EQ(outcome.status, 5) << outcome.err;
+    EXPECT_EQ(ParseJson(heard)["exit_status"], 5);
+    EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
 TEST_F(Streams, MeshesGoThroughPipes) {
     std::string const pipe = folder / "pipe.obj";
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);

@@ -331,6 +331,40 @@ TEST(EditReader, FiltersThatAreNoCurveAreNamed) {
     }
 }
 
+TEST(EditReader, KeysThatStandTwiceInOneObjectAreNamed) {
+    test::TemporaryFolder const folder;
+    auto const refuse = [&](std::string const& text) {
+        std::string const path = folder.Write("edit.json", text);
+        return test::RefusalOf([&] { engine::ReadCurvatureEdit(path); }).substr(path.size());
+    };
+    EXPECT_EQ(refuse(R"({"curvature": [], "curvature": []})"),
+              ": key 'curvature' stands twice in one object");
+    EXPECT_EQ(refuse(R"({"curvature": [{"vertex": 1, "vertex": 2, "factor": 1}]})"),
+              ": key 'vertex' stands twice in one object");
+    EXPECT_EQ(refuse(R"({"filter": {"points": [[0, 0], [1, 1]], "points": 3}})"),
+              ": key 'points' stands twice in one object");
+    std::string const apart = folder.Write("apart.json",
+                                           R"({"curvature": [{"vertex": 1, "factor": 1},
+                                                             {"vertex": 2, "factor": 1}]})");
+    EXPECT_EQ(engine::ReadCurvatureEdit(apart).factors.size(), 2u);
+}
+
+TEST(EditReader, AVertexIsSetOnceAndChangedAnyNumberOfTimes) {
+    test::TemporaryFolder const folder;
+    auto const refuse = [&](std::string const& key, std::string const& value) {
+        std::string const entry = "{\"vertex\": 3, " + value + "}";
+        std::string const path =
+            folder.Write("edit.json", "{\"" + key + "\": [" + entry + ", " + entry + "]}");
+        std::string const message = test::RefusalOf([&] { engine::ReadCurvatureEdit(path); });
+        return message.substr(std::min(path.size(), message.size()));
+    };
+    EXPECT_EQ(refuse("set_curvature", R"("mean": 1)"), ": 'set_curvature' names vertex 3 twice");
+    EXPECT_EQ(refuse("set_normal", R"("normal": [0, 0, 1])"),
+              ": 'set_normal' names vertex 3 twice");
+    EXPECT_EQ(refuse("curvature", R"("factor": 2)"), "");
+    EXPECT_EQ(refuse("rotate", R"("axis": [0, 0, 1], "degrees": 5)"), "");
+}
+
 TEST(EditReader, DeepAndLongValuesAreRefusedInAShortLine) {
     test::TemporaryFolder const folder;
     auto const refuse = [&](std::string const& text) {

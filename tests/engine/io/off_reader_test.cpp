@@ -53,8 +53,16 @@ TEST(OffReader, NumbersOfAVertexThatTheKeywordDoesNotNameAreWarnedOf) {
     ASSERT_EQ(scene.warnings.size(), 1u);
     EXPECT_EQ(scene.warnings[0].find("mesh.off:4: 2 lines of vertices with more than"), 0u)
         << scene.warnings[0];
-    EXPECT_TRUE(
-        ParseOff("OFF\n3 1 0\n0 0 0\n1 0 0 # 9\n0 1 0\n3 0 1 2 255 0 0\n").warnings.empty());
+    EXPECT_TRUE(ParseOff("OFF\n3 1 0\n0 0 0\n1 0 0 # 9\n0 1 0\n3 0 1 2\n").warnings.empty());
+}
+
+TEST(OffReader, ColoursOfFacesAreWarnedOf) {
+    Scene const scene = ParseOff(
+        "OFF\n4 3 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 # red\n3 0 2 3 255 0 0\n3 0 1 3 7\n");
+    EXPECT_EQ(scene.cage.faceSizes, (std::vector<int>{3, 3, 3}));
+    EXPECT_EQ(scene.warnings, (std::vector<std::string>{
+                                  "mesh.off:8: 2 lines of faces with more than their corners, as "
+                                  "colours, which is not read; colours of vertices are (COFF)"}));
 }
 
 TEST(OffReader, NormalsAreSkipped) {

@@ -77,6 +77,14 @@ TEST(TextScanner, BackslashesJoinLinesThatKeepTheirNumbers) {
     EXPECT_EQ(ReadLines("a\\\nb"), (std::vector<Line>{{1, "a\\"}, {2, "b"}}));
 }
 
+TEST(TextScanner, BlanksBehindABackslashChangeNothing) {
+    std::vector<Line> const expected{{1, "f 1 2  3  4"}, {4, "next"}};
+    EXPECT_EQ(ReadJoined("f 1 2\\ \n 3\\\t \n 4\nnext\n"), expected);
+    EXPECT_EQ(ReadJoined("f 1 2\\ \r\n 3\\\t\r\n 4\r\nnext\r\n"), expected);
+    EXPECT_EQ(ReadJoined("g a\\ b\nf 1\n \nf 2"),
+              (std::vector<Line>{{1, "g a\\ b"}, {2, "f 1"}, {3, ""}, {4, "f 2"}}));
+}
+
 TEST(TextScanner, ABackslashPartsWordsThatLinesEndAndBeginWith) {
     EXPECT_EQ(ReadJoined("1\\\n2"), (std::vector<Line>{{1, "1 2"}}));
 }

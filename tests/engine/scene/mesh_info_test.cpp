@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/scene/weld.h"
 #include "far_ext/topology/refiner.h"
 #include "support/mesh_info.h"
 #include "support/meshes.h"
@@ -395,6 +396,18 @@ TEST(MeshInfo, BoundaryVerticesThatCoincideAreCountedWithTheCure) {
         defect->message,
         "5 boundary vertices coincide with others, first vertex 1 with 4: sheets that only touch "
         "come apart as they are subdivided; `weld` 0 joins them");
+}
+
+TEST(MeshInfo, WeldingIsNotAdvisedWhereItWouldJoinNothing) {
+    // Three quads along one edge, as the pages of a book, none joined with another.
+    Scene const book = test::MakeScene({0, 0, 0, 0, 0, 1, 1, 0, 1, 1, 0, 0, 0,  0, 0, 0,  0, 1,
+                                        0, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 1, -1, 0, 1, -1, 0, 0},
+                                       {{0, 1, 2, 3}, {4, 5, 6, 7}, {8, 9, 10, 11}});
+    auto const* const defect = FindDefect(Describe(book), "coincident_vertices");
+    ASSERT_TRUE(defect);
+    EXPECT_TRUE(defect->message.ends_with("`weld` 0 can join none of them as they are"))
+        << defect->message;
+    EXPECT_EQ(engine::Weld(book, 0.0).cage.numVertices, book.cage.numVertices);
 }
 
 TEST(MeshInfo, VerticesThatCoincideWithinSurfacesAreNoDefect) {

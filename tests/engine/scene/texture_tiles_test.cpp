@@ -5,6 +5,7 @@
 
 #include "engine/bake/bake.h"
 #include "engine/scene/mesh_info.h"
+#include "support/errors.h"
 #include "support/meshes.h"
 
 namespace limn {
@@ -75,11 +76,28 @@ TEST(TextureTiles, SmallFacesCountAsLargeOnesDo) {
 }
 
 TEST(TextureTiles, FacesFarBeyondTheRangeFillIt) {
-    for (double far : {1e3, 1e9, 1e30})
+    for (double far : {1e3, 1e9, 1e12})
         EXPECT_EQ(TilesOf(MakeFace(MakeSquare(-far, -far, far, far))).size(), 9000u) << far;
-    EXPECT_EQ(TilesOf(MakeFace(MakeSquare(0, 0, 1e30, 1e30))).size(), 9000u);
+    EXPECT_EQ(TilesOf(MakeFace(MakeSquare(0, 0, 1e12, 1e12))).size(), 9000u);
     EXPECT_TRUE(TilesOf(MakeFace(MakeSquare(11, 0, 1e9, 1))).empty());
     EXPECT_TRUE(TilesOf(MakeFace(MakeSquare(-5, -5, -1, 1))).empty());
+}
+
+// Nor does a bake find a texel there: doubles of that size are whole tiles apart.
+TEST(TextureTiles, FacesWhoseNumbersCannotTellTilesApartLieInNone) {
+    for (double far : {1e15, 1e30}) {
+        for (auto const& uvs : {MakeSquare(-far, -far, far, far), MakeSquare(0, 0, far, far),
+                                MakeSquare(0, 0, far, 1), MakeSquare(0, 0, 1, far)}) {
+            Model const model = MakeFace(uvs);
+            EXPECT_TRUE(TilesOf(model).empty()) << far;
+            engine::Job job;
+            engine::BakeOptions options;
+            options.maps = {"position"};
+            options.width = options.height = 16;
+            options.tiles = {1001};
+            EXPECT_TRUE(test::CatchError([&] { engine::BakeToMemory(model, options, job); }));
+        }
+    }
 }
 
 TEST(TextureTiles, TellsWhichFacesLeaveTheTilesThatAreThere) {
