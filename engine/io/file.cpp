@@ -65,10 +65,10 @@ InputFile::InputFile(std::string const& path) {
     while (_data) {
         if (_size == capacity) {
             capacity *= 2;
-            auto* const larger = static_cast<char*>(std::realloc(_data.get(), capacity));
+            char* const held = _data.release();
+            auto* const larger = static_cast<char*>(std::realloc(held, capacity));
+            _data.reset(larger ? larger : held);
             if (!larger) break;
-            static_cast<void>(_data.release());
-            _data.reset(larger);
         }
         ssize_t const count = ReadSome(file, _data.get() + _size, capacity - _size);
         if (count < 0) ThrowIoError(path, "cannot be read");

@@ -92,7 +92,7 @@ protected:
     }
 };
 
-Words const kNoise{"--noise-octaves", "3", "--noise-seed", "5", "--noise-gain", "0.7"};
+Words const kThreeOctaves{"--noise-octaves", "3", "--noise-seed", "5", "--noise-gain", "0.7"};
 
 // Texel centres of a bake of 2 x 2 texels a face, and the vertices of the mesh refined twice, are
 // places of faces with s and t known.
@@ -108,7 +108,7 @@ TEST_F(CliNoise, AtTheSamePlaceIsTheSameInABakeATableAndAMesh) {
         int const size = 2 * kFaces;
         ASSERT_EQ(Bake(mesh, "x.exr",
                        Words{"--maps", "noise", "--fvar", "all", "--size", std::to_string(size)} +
-                           kNoise + look)
+                           kThreeOctaves + look)
                       .status,
                   0);
         Imf::TiledInputFile input((folder / "x.exr").c_str());
@@ -124,8 +124,8 @@ TEST_F(CliNoise, AtTheSamePlaceIsTheSameInABakeATableAndAMesh) {
         }
         for (int vertex = 0; vertex < kFaces; ++vertex)  // first corners of the first faces
             places += fmt::format("{},0,0\n", vertex);
-        auto const table = Eval(places, Words{"--maps", "noise"} + kNoise + look);
-        auto const primvar = Refine(Words{"--levels", "2"} + kNoise + look);
+        auto const table = Eval(places, Words{"--maps", "noise"} + kThreeOctaves + look);
+        auto const primvar = Refine(Words{"--levels", "2"} + kThreeOctaves + look);
         EXPECT_EQ(primvar.name, isRamp ? "color" : "noise");
         size_t const numTexels = static_cast<size_t>(size) * static_cast<size_t>(size);
         for (size_t c = 0; c < columns.size(); ++c) {
@@ -184,13 +184,13 @@ TEST_F(CliNoise, ReportsNameSingularLevels) {
           {"refine", cube, "-o", folder / "x.ply", "--noise"}}) {
         Outcome const outcome = Limn(words + Words{"--report", folder / "r.json"});
         ASSERT_EQ(outcome.status, 0) << outcome.err;
-        EXPECT_EQ(Report()["noise"]["singular_levels"], json({0}));
+        EXPECT_EQ(Report()["noise"]["singular_levels"], json::array({0}));
         EXPECT_TRUE(Contains(outcome.err, "all vertices have valence 3")) << outcome.err;
     }
     std::string const textured = test::ScenePath("cube/cube.obj");
     ASSERT_EQ(Bake(textured, "x.exr", {"--maps", "noise", "--report", folder / "r.json"}).status,
               0);
-    EXPECT_EQ(Report()["noise"]["singular_levels"], json({0}));
+    EXPECT_EQ(Report()["noise"]["singular_levels"], json::array({0}));
 }
 
 TEST_F(CliNoise, RampsAreWrittenToAnObjAndScalarsAreNot) {

@@ -57,7 +57,7 @@ TEST_F(CliStreamlines, PlacesOfTheTableAreItsPoints) {
     }
     EXPECT_NEAR(report["total_length"].get<double>(), total, 1e-6 * total);
     EXPECT_LT(report["farthest"].get<double>(), 0.3);
-    json const stopped = report["stopped"];
+    json const& stopped = report["stopped"];
     EXPECT_EQ(stopped["boundary"], 0);  // spot is closed
     EXPECT_GT(stopped["near"].get<int>() + stopped["singular"].get<int>(), 0);
 }

@@ -24,7 +24,8 @@ TEST_F(CliSmooth, AdaptiveRunsAreReported) {
     auto const found = Smooth(frame, {"--adaptive", "4e-3", "--width", "0.1"});
     for (auto const& [edge, count] : test::CountFacesAtEdges(found.cage.faceVertices))
         EXPECT_EQ(count, 2);
-    json const report = Report(), adaptive = report["adaptive"];
+    json const report = Report();
+    json const& adaptive = report["adaptive"];
     EXPECT_EQ(adaptive["asked"], 4e-3);
     EXPECT_LE(adaptive["estimated"], 1.2 * 4e-3);
     EXPECT_EQ(adaptive["vertices"], found.cage.numVertices);
