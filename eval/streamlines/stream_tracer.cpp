@@ -111,7 +111,7 @@ std::optional<StreamTracer::Step> StreamTracer::ShortenToEdge(Start const& start
         auto const step = TryStep(start, inside.length + part * width);
         if (!step) return {};
         double const found = findDepth(step->end);
-        if (std::abs(found) <= kOnEdge) return *step;
+        if (std::abs(found) <= kOnEdge) return step;
         int const side = found < 0.0 ? -1 : 1;
         (side < 0 ? outside : inside) = *step;
         (side < 0 ? beyond : depth) = found;

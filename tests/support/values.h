@@ -14,8 +14,9 @@ namespace limn::test {
 /// Numbers from -1 to 1, the same for the same seed.
 inline std::vector<float> MakeRandomValues(size_t count, unsigned seed) {
     std::mt19937 random(seed);
-    std::vector<float> values(count);
-    for (float& value : values) value = static_cast<float>(random()) * 0x1p-31f - 1.0f;
+    std::vector<float> values;
+    values.reserve(count);
+    while (values.size() < count) values.push_back(static_cast<float>(random()) * 0x1p-31f - 1.0f);
     return values;
 }
 
