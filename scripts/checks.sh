@@ -36,7 +36,7 @@ check_clang() {
 # Assertions are on here; debug information goes as far as a stack needs.
 check_sanitizers() {
     in_folder asan tools build_target all -DLIMN_DEVELOPER=ON -DLIMN_SANITIZE=address,undefined \
-        -DCMAKE_CXX_FLAGS_RELEASE='-O1 -g1'
+        -DCMAKE_UNITY_BUILD=ON -DCMAKE_CXX_FLAGS_RELEASE='-O1 -g1'
     (
         export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
         run_tests asan "$@"
