@@ -88,12 +88,13 @@ std::string ToText(engine::Model const& model, engine::MeshInfo const& info) {
     if (!info.uv.present) {
         line("UVs", "none");
     } else {
+        auto const& tiles = info.uv.tiles;
         line("UVs",
-             fmt::format(
-                 "tiles {}; faces: {} over others, {} flipped, {} without area, {} out of range, "
-                 "{} without UVs",
-                 engine::ListTiles(info.uv.tiles), info.uv.overlapFaces, info.uv.flippedFaces,
-                 info.uv.zeroAreaFaces, info.uv.outOfRangeFaces, info.uv.bareFaces));
+             fmt::format("{}; faces: {} over others, {} flipped, {} without area, {} out of range, "
+                         "{} without UVs",
+                         tiles.empty() ? "no tile" : "tiles " + engine::ListTiles(tiles),
+                         info.uv.overlapFaces, info.uv.flippedFaces, info.uv.zeroAreaFaces,
+                         info.uv.outOfRangeFaces, info.uv.bareFaces));
     }
     if (auto const& weld = model.GetWeld()) {
         line("weld", fmt::format("within {}: {} vertices joined to others, {} left apart",

@@ -64,6 +64,17 @@ TEST_F(Cli, InfoTellsTheEffectiveOptions) {
                            {"triangles", "smooth"}}));
 }
 
+TEST_F(Cli, InfoSaysWhereNoTileIsReached) {
+    std::string const sheet =
+        folder.Write("a.obj",
+                     "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1e30 0\nvt 1e30 1\nvt 0 1\n"
+                     "f 1/1 2/2 3/3 4/4\n");
+    EXPECT_TRUE(Contains(Limn({"info", sheet}).out, "no tile; faces: 0 over others"));
+    json const uv = ParseJson(Limn({"info", sheet, "--json"}).out)["uv"];
+    EXPECT_EQ(uv["tiles"], json::array());
+    EXPECT_EQ(uv["out_of_range_faces"], 1);
+}
+
 TEST_F(Cli, InfoJsonStandsNamesThatAreNotUtf8) {
     std::string const mesh =
         folder.Write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl caf\xe9\nf 1 2 3\n");
