@@ -85,13 +85,12 @@ std::unique_ptr<eval::AlphaSteps> MakeAlphaSteps(Far::TopologyRefiner const& ref
     return std::make_unique<eval::AlphaSteps>(refiner, lastLevel, options.alpha);
 }
 
-/// Refined vertices at their limit. Vertices without a face that has one stay.
-std::vector<double> MoveToLimit(Scene const& fine, Job& job) {
+/// Vertices of the refiner's last level at their limit. Those without a face that has one stay.
+std::vector<double> MoveToLimit(Far::TopologyRefiner const& refiner, Scene const& fine, Job& job) {
     job.Start("moving vertices to the limit");
-    auto const refiner = far_ext::CreateRefiner(fine.cage);
-    auto const surface = NamingMesh(fine.path, [&] { return eval::LimitSurface(*refiner); });
-    return eval::EvaluateVertexLimits(surface, fine.positions, 3, eval::FaceTree::kLimitDepth,
-                                      [&] { job.CheckStopped(); })
+    NamingMesh(fine.path, [&] { eval::LimitSurface::CheckExcess(refiner, refiner.GetMaxLevel()); });
+    return eval::FindVertexLimits(refiner, refiner.GetMaxLevel(), fine.positions, 3,
+                                  [&] { job.CheckStopped(); })
         .values;
 }
 
@@ -166,14 +165,17 @@ Scene RefineUniformly(Model const& model, RefineOptions const& options, Job& job
     far_ext::CheckTension(options.rule);
     WarnOfRoughVertices(model, options.rule, job);
     job.Start("refining topology");
-    auto const refiner = MakeUniformRefiner(model.GetCage(), model.GetPath(), options.levels);
-    auto const alpha = MakeAlphaSteps(*refiner, options);
-    Scene fine = RefineAllButPositions(model, *refiner, job, alpha.get());
+    std::unique_ptr<Far::TopologyRefiner> const refined =
+        options.levels == 0 ? nullptr
+                            : MakeUniformRefiner(model.GetCage(), model.GetPath(), options.levels);
+    Far::TopologyRefiner const& refiner = refined ? *refined : model.GetRefiner();
+    auto const alpha = MakeAlphaSteps(refiner, options);
+    Scene fine = RefineAllButPositions(model, refiner, job, alpha.get());
     job.Start("refining positions");
     fine.positions = model.GetPositions();
     for (int level = 1; level <= options.levels; ++level) {
         job.CheckStopped();
-        auto children = eval::SubdivideValues<3>(*refiner, level, options.rule, fine.positions);
+        auto children = eval::SubdivideValues<3>(refiner, level, options.rule, fine.positions);
         if (alpha) alpha->Add(level - 1, fine.positions, 3, children);
         fine.positions = std::move(children);
     }
@@ -181,7 +183,7 @@ Scene RefineUniformly(Model const& model, RefineOptions const& options, Job& job
     if (alpha)
         fine.positions = alpha->FindLimits(fine.positions, 3);
     else if (!options.rule.IsInterpolating())
-        fine.positions = MoveToLimit(fine, job);
+        fine.positions = MoveToLimit(refiner, fine, job);
     return fine;
 }
 
