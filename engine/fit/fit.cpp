@@ -96,6 +96,17 @@ eval::VertexLimits FindFarLimits(FarReport const& report, std::span<Index const>
     return limits;
 }
 
+/// Vertices whose limits are found without A, by refining towards them: all of a small mesh, of a
+/// large one so many, spread evenly, and the one that A's rows find worst.
+std::vector<Index> ChooseWitnesses(Index numVertices, Index worst) {
+    constexpr Index kMostWitnesses = 4096;
+    Index const step = numVertices / kMostWitnesses + 1;
+    std::vector<Index> witnesses;
+    for (Index vertex = 0; vertex < numVertices; vertex += step) witnesses.push_back(vertex);
+    if (worst >= 0 && worst % step != 0) witnesses.push_back(worst);
+    return witnesses;
+}
+
 /// \param mesh     whose vertex i, for those of `data`, must have its limit at the data
 /// \param refiner  the mesh's
 Certificate Certify(Scene const& mesh, Far::TopologyRefiner const& refiner,
@@ -111,10 +122,14 @@ Certificate Certify(Scene const& mesh, Far::TopologyRefiner const& refiner,
         auto const limits = FindFarLimits(*result.far, vertices, mesh.positions);
         return JudgeMisses(limits.values, limits.hasLimit, data, options.tolerance);
     }
+    auto const check = [&] { job.CheckStopped(); };
+    auto limits = eval::FindVertexLimits(refiner, 0, mesh.positions, 3, check);
+    Index const worst =
+        JudgeMisses(limits.values, limits.hasLimit, data, options.tolerance).worstVertex;
     eval::LimitSurface const surface(refiner);
-    int const depth = ChooseDepth(mesh, eval::FindSize(data, 3), options.tolerance);
-    auto const limits =
-        eval::EvaluateVertexLimits(surface, mesh.positions, 3, depth, [&] { job.CheckStopped(); });
+    eval::EvaluateVertexLimitsAt(
+        ChooseWitnesses(refiner.GetLevel(0).GetNumVertices(), worst), surface, mesh.positions, 3,
+        limits, ChooseDepth(mesh, eval::FindSize(data, 3), options.tolerance), check);
     return JudgeMisses(limits.values, limits.hasLimit, data, options.tolerance);
 }
 

@@ -31,9 +31,10 @@ struct FitOptions {
 };
 
 /// How far the limit surface of the result, rounded as it is, passes from the vertices that were
-/// given (of those that have a limit), over the diagonal of their bounding box. Found without A: by
-/// refining towards each vertex (eval::EvaluateVertexLimits); with alpha in all steps by refining
-/// once, and the limits of that level.
+/// given (of those that have a limit), over the diagonal of their bounding box. Found by A's rows
+/// (eval::FindVertexLimits), at a sample of vertices and at the worst without A, by refining
+/// towards the vertex (eval::EvaluateVertexLimitsAt); with alpha in all steps by refining once, and
+/// the limits of that level.
 struct Certificate {
     double max = 0.0, rms = 0.0;
     Index worstVertex = -1;

@@ -4,17 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include "engine/scene/require_limit.h"
 #include "engine/scene/subdivision_names.h"
-#include "eval/surface/graded_points.h"
+#include "eval/parallel/rows.h"
+#include "eval/surface/surface_integrals.h"
 #include "eval/surface/surface_sample.h"
 #include "far_ext/rows/points.h"
 #include "far_ext/topology/face_components.h"
@@ -26,47 +24,9 @@ namespace {
 using Level = Far::TopologyLevel;
 constexpr double kPi = 3.14159265358979323846;
 
-/// Sums over places of a surface; `area` is what each stands for.
-struct Sums {
-    double area = 0.0, volume = 0.0, bending = 0.0, mean = 0.0, meanSquares = 0.0;
-    double gaussian = 0.0, gaussianSquares = 0.0, gaussianMagnitude = 0.0;
-    double minMean = std::numeric_limits<double>::infinity(), maxMean = -minMean;
-    double minGaussian = minMean, maxGaussian = -minMean;
-    size_t count = 0;
+using eval::SurfaceSums;
 
-    void AddCurvature(double share, double k1, double k2) {
-        double const h = 0.5 * (k1 + k2), k = k1 * k2;
-        area += share;
-        bending += share * (k1 * k1 + k2 * k2);
-        mean += share * h;
-        meanSquares += share * h * h;
-        gaussian += share * k;
-        gaussianSquares += share * k * k;
-        gaussianMagnitude += share * std::abs(k);
-        minMean = std::min(minMean, h);
-        maxMean = std::max(maxMean, h);
-        minGaussian = std::min(minGaussian, k);
-        maxGaussian = std::max(maxGaussian, k);
-        ++count;
-    }
-    void Add(Sums const& other) {
-        area += other.area;
-        volume += other.volume;
-        bending += other.bending;
-        mean += other.mean;
-        meanSquares += other.meanSquares;
-        gaussian += other.gaussian;
-        gaussianSquares += other.gaussianSquares;
-        gaussianMagnitude += other.gaussianMagnitude;
-        minMean = std::min(minMean, other.minMean);
-        maxMean = std::max(maxMean, other.maxMean);
-        minGaussian = std::min(minGaussian, other.minGaussian);
-        maxGaussian = std::max(maxGaussian, other.maxGaussian);
-        count += other.count;
-    }
-};
-
-CurvatureStatistics MakeStatistics(Sums const& sums, double sum, double squares, double min,
+CurvatureStatistics MakeStatistics(SurfaceSums const& sums, double sum, double squares, double min,
                                    double max) {
     if (sums.count == 0 || !(sums.area > 0.0)) return {};
     double const mean = sum / sums.area;
@@ -82,9 +42,10 @@ public:
           _job(job),
           _components(far_ext::FaceComponents::Find(_level)) {}
 
-    std::vector<Sums> SurveyLimit() const;
-    std::vector<Sums> SurveyMesh() const;
-    Measurement Conclude(std::vector<Sums> const& ofComponents, MeasuredSurface surface) const;
+    std::vector<SurfaceSums> SurveyLimit() const;
+    std::vector<SurfaceSums> SurveyMesh() const;
+    Measurement Conclude(std::vector<SurfaceSums> const& ofComponents,
+                         MeasuredSurface surface) const;
 
 private:
     std::vector<std::string> FindReasons(MeasuredSurface surface) const;
@@ -98,41 +59,45 @@ private:
 };
 
 /// Sums of faces, added in order: the same bits whatever the threads.
-std::vector<Sums> Surveyor::SurveyLimit() const {
+std::vector<SurfaceSums> Surveyor::SurveyLimit() const {
     eval::LimitSurface const surface(_model.GetRefiner());
-    eval::GradedPoints const points(surface);
-    std::vector<Sums> ofFaces(_components.ofFace.size());
-    tbb::enumerable_thread_specific<eval::FaceTree> trees(
-        [&] { return eval::FaceTree(surface, _model.GetPositions(), 3); });
-    tbb::parallel_for(
-        tbb::blocked_range<Index>(0, surface.GetNumFaces(), 64), [&](auto const& faces) {
+    eval::RingCache rings(_model.GetCage().scheme, _model.GetRefiner().GetSchemeOptions(),
+                          eval::LimitSurface::kMostRingBytes);
+    tbb::enumerable_thread_specific<eval::SurfaceIntegrator> integrators([&] {
+        return eval::SurfaceIntegrator(surface, _model.GetPositions(), _orientation, rings);
+    });
+    struct Run {  // of faces of one component
+        int component;
+        SurfaceSums sums;
+    };
+    constexpr Index kFacesPerBlock = 16384;  // enough for most lanes to be taken
+    auto const ofBlocks =
+        eval::MapBlocks(surface.GetNumFaces(), kFacesPerBlock, [&](Index begin, Index end) {
             _job.CheckStopped();
-            eval::FaceTree& tree = trees.local();
-            for (Index face = faces.begin(); face < faces.end(); ++face) {
-                if (!surface.HasLimit(face)) continue;
-                tree.Bind(face);
-                points.ForEach(face, [&](eval::SurfacePlace const& place, double weight) {
-                    auto const x =
-                        eval::EvaluateSample(tree, place.domain, place.s, place.t, _orientation);
-                    double const area = weight * x.tangentS.cross(x.tangentT).norm();
-                    ofFaces[face].volume += area * x.position.dot(x.normal) / 3.0;
-                    if (area > 0.0 && !x.isDegenerate)
-                        ofFaces[face].AddCurvature(area, x.curvature.k1, x.curvature.k2);
-                });
+            std::vector<SurfaceSums> ofFaces(static_cast<size_t>(end - begin));
+            integrators.local().Integrate(begin, end, ofFaces);
+            std::vector<Run> runs;
+            for (Index face = begin; face < end; ++face) {
+                int const component = _components.ofFace[face];
+                if (runs.empty() || runs.back().component != component)
+                    runs.push_back({component, {}});
+                runs.back().sums.Add(ofFaces[face - begin]);
             }
+            return runs;
         });
-    std::vector<Sums> ofComponents(static_cast<size_t>(_components.count));
-    for (size_t face = 0; face < ofFaces.size(); ++face)
-        ofComponents[_components.ofFace[face]].Add(ofFaces[face]);
+    std::vector<SurfaceSums> ofComponents(static_cast<size_t>(_components.count));
+    for (auto const& runs : ofBlocks) {
+        for (Run const& run : runs) ofComponents[run.component].Add(run.sums);
+    }
     return ofComponents;
 }
 
-std::vector<Sums> Surveyor::SurveyMesh() const {
-    std::vector<Sums> ofComponents(static_cast<size_t>(_components.count));
+std::vector<SurfaceSums> Surveyor::SurveyMesh() const {
+    std::vector<SurfaceSums> ofComponents(static_cast<size_t>(_components.count));
     auto const curvature = eval::MeasureMeshCurvature(_level, _model.GetPositions(), _orientation);
     for (Index vertex = 0; vertex < _level.GetNumVertices(); ++vertex) {
         if (!(curvature.areas[vertex] > 0.0)) continue;
-        Sums& sums = ofComponents[_components.ofFace[_level.GetVertexFaces(vertex)[0]]];
+        SurfaceSums& sums = ofComponents[_components.ofFace[_level.GetVertexFaces(vertex)[0]]];
         sums.AddCurvature(curvature.areas[vertex], curvature.k1[vertex], curvature.k2[vertex]);
     }
     auto const faceNormals = eval::FindFaceNormals(_level, _model.GetPositions());
@@ -181,14 +146,14 @@ bool Surveyor::EnclosesVolume() const {
     return true;
 }
 
-Measurement Surveyor::Conclude(std::vector<Sums> const& ofComponents,
+Measurement Surveyor::Conclude(std::vector<SurfaceSums> const& ofComponents,
                                MeasuredSurface surface) const {
     Measurement result;
     auto const reasons = FindReasons(surface);
     auto const euler = _components.FindEulerCharacteristics(_level);
-    Sums all;
+    SurfaceSums all;
     for (size_t c = 0; c < static_cast<size_t>(_components.count); ++c) {
-        Sums const& sums = ofComponents[c];
+        SurfaceSums const& sums = ofComponents[c];
         all.Add(sums);
         GaussBonnetAudit audit;
         audit.component = static_cast<int>(c);

@@ -92,22 +92,23 @@ std::unique_ptr<eval::AlphaSteps> MakeAlphaSteps(Far::TopologyRefiner const& ref
     return std::make_unique<eval::AlphaSteps>(refiner, lastLevel, options.alpha);
 }
 
-/// Refined vertices at their limit. Vertices without a face that has one stay.
+/// Vertices of the refiner's last level at their limit. Those without a face that has one stay.
 ///
 /// \param evaluator  null: without a limit matrix, in double
-std::vector<double> MoveToLimit(Scene const& fine, eval::TableEvaluator* evaluator, Job& job) {
+std::vector<double> MoveToLimit(Far::TopologyRefiner const& refiner, Scene const& fine,
+                                eval::TableEvaluator* evaluator, Job& job) {
     job.Start("moving vertices to the limit");
-    auto const refiner = far_ext::CreateRefiner(fine.cage);
     if (evaluator) {
+        auto const ofFine = far_ext::CreateRefiner(fine.cage);
         std::vector<double> limits(fine.positions.size());
         NamingMesh(fine.path, [&] {
-            return eval::LimitApplication::Build(*refiner, {}, evaluator);
+            return eval::LimitApplication::Build(*ofFine, {}, evaluator);
         }).Apply(fine.positions, 3, limits);
         return limits;
     }
-    auto const surface = NamingMesh(fine.path, [&] { return eval::LimitSurface(*refiner); });
-    return eval::EvaluateVertexLimits(surface, fine.positions, 3, eval::FaceTree::kLimitDepth,
-                                      [&] { job.CheckStopped(); })
+    NamingMesh(fine.path, [&] { eval::LimitSurface::CheckExcess(refiner, refiner.GetMaxLevel()); });
+    return eval::FindVertexLimits(refiner, refiner.GetMaxLevel(), fine.positions, 3,
+                                  [&] { job.CheckStopped(); })
         .values;
 }
 
@@ -183,9 +184,12 @@ Scene RefineUniformly(Model const& model, RefineOptions const& options, Job& job
     far_ext::CheckTension(options.rule);
     WarnOfRoughVertices(model, options.rule, job);
     job.Start("refining topology");
-    auto const refiner = MakeUniformRefiner(model.GetCage(), model.GetPath(), options.levels);
-    auto const alpha = MakeAlphaSteps(*refiner, options);
-    eval::ValueRefiner values(*refiner, options.evaluator);
+    std::unique_ptr<Far::TopologyRefiner> const refined =
+        options.levels == 0 ? nullptr
+                            : MakeUniformRefiner(model.GetCage(), model.GetPath(), options.levels);
+    Far::TopologyRefiner const& refiner = refined ? *refined : model.GetRefiner();
+    auto const alpha = MakeAlphaSteps(refiner, options);
+    eval::ValueRefiner values(refiner, options.evaluator);
     Scene fine = RefineAllButPositions(model, values, job, alpha.get());
     job.Start("refining positions");
     fine.positions = model.GetPositions();
@@ -199,7 +203,7 @@ Scene RefineUniformly(Model const& model, RefineOptions const& options, Job& job
     if (alpha)
         fine.positions = alpha->FindLimits(fine.positions, 3);
     else if (!options.rule.IsInterpolating())
-        fine.positions = MoveToLimit(fine, options.evaluator, job);
+        fine.positions = MoveToLimit(refiner, fine, options.evaluator, job);
     return fine;
 }
 

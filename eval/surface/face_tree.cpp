@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "eval/surface/patch_polynomial.h"
+#include "eval/surface/ring_cache.h"
 #include "far_ext/error.h"
 
 namespace limn::eval {
@@ -41,26 +42,28 @@ int FaceTree::AddNode(RingNode const* ring, size_t numPoints) {
     return static_cast<int>(_nodes.size()) - 1;
 }
 
-/// The face's control points, in an empty tree.
-void FaceTree::GatherPoints(Index face) {
+/// The face's control points, in an empty tree, and its ring: null for a plain patch.
+RingNode const* FaceTree::Gather(Index face) {
     CheckFace(_surface, face);
     _face = face;
     _numDomains = _surface.GetNumDomains(face);
     _nodes.clear();
     _children.clear();
     _values.assign(1, 0.0);
-    if (_surface._ringOfFace[face]) {
-        _gatherer.GatherPoints(face, _points);
-    } else {
+    if (_surface.IsPlainPatch(face)) {
         _points.resize(_isLoop ? 12 : 16);
         _surface.GatherPlainPoints(face, _points.data());
+        return nullptr;
     }
+    _gatherer.Gather(face, _ring, _points);
+    _surface._cache->Renew(_rings);
+    return _rings->Find(_ring);
 }
 
 void FaceTree::Bind(Index face) {
-    GatherPoints(face);
+    RingNode const* const ring = Gather(face);
     _length = _numChannels;
-    AddNode(_surface._ringOfFace[face], _points.size());
+    AddNode(ring, _points.size());
     double* to = &_values[_nodes[0].points];
     for (Index point : _points) {
         for (Values const& part : _parts) {
@@ -72,9 +75,9 @@ void FaceTree::Bind(Index face) {
 }
 
 void FaceTree::BindWeights(Index face) {
-    GatherPoints(face);
+    RingNode const* const ring = Gather(face);
     _length = static_cast<int>(_points.size());
-    AddNode(_surface._ringOfFace[face], _points.size());
+    AddNode(ring, _points.size());
     for (size_t i = 0; i < _points.size(); ++i)
         _values[_nodes[0].points + i * _points.size() + i] = 1.0;
     Recentre(_nodes[0], nullptr);
@@ -135,7 +138,7 @@ int FaceTree::GetChild(int parent, int child) {
     if (_children[slot] >= 0) return _children[slot];
 
     auto const& step = children[child];
-    RingNode const* const ring = _surface._cache->FindChild(*parentRing, child);
+    RingNode const* const ring = _rings->FindChild(*parentRing, child);
     int const index = AddNode(ring, step.weights.GetNumRows());
     Node& node = _nodes[index];
     Node const& from = _nodes[parent];

@@ -2,12 +2,17 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "eval/surface/surface_place.h"
+#include "far_ext/rings/ring_subdivision.h"
 
 namespace limn::eval {
+
+class RingNode;
+class RingStore;
 
 /// One polynomial piece of a face's limit surface with a point in it.
 struct PatchPoint {
@@ -117,7 +122,7 @@ private:
     }
     [[noreturn]] void RefuseNode(int node) const;
     PatchPoint MakeLeaf(Node const& node) const;
-    void GatherPoints(Index face);
+    RingNode const* Gather(Index face);
     int AddNode(RingNode const* ring, size_t numPoints);
     void Recentre(Node& node, double const* parentOrigin);
     void MakeCoefficients(Node& node);
@@ -137,6 +142,8 @@ private:
     Index _face = -1;
     int _numDomains = 0;
     far_ext::FaceRingGatherer _gatherer;
+    std::shared_ptr<RingStore> _rings;  // that the current face's nodes are in
+    far_ext::FaceRing _ring;            // scratch
     std::vector<Node> _nodes;
     std::vector<int> _children;
     std::vector<double> _values;  // an arena, reset by Bind; entry 0 is unused

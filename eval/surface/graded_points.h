@@ -19,9 +19,24 @@ public:
     explicit GradedPoints(LimitSurface const& surface)
         : _surface(surface), _level(surface.GetRefiner().GetLevel(0)) {}
 
+    /// Points of one piece, side by side.
+    static constexpr int kPointsPerPiece = 9;
+    struct Piece {
+        std::array<double, kPointsPerPiece> s, t, weights;
+    };
+
     /// Calls visit(SurfacePlace, weight) for all points of a face with a limit.
     template <class Visit>
     void ForEach(Index face, Visit const& visit) const {
+        ForEachPiece(face, [&](int domain, Piece const& piece) {
+            for (size_t i = 0; i < kPointsPerPiece; ++i)
+                visit(SurfacePlace{face, domain, piece.s[i], piece.t[i]}, piece.weights[i]);
+        });
+    }
+
+    /// Calls visit(domain, Piece) for all pieces of a face with a limit.
+    template <class Visit>
+    void ForEachPiece(Index face, Visit const& visit) const {
         int const numDomains = _surface.GetNumDomains(face);
         auto const vertices = _level.GetFaceVertices(face);
         for (int domain = 0; domain < numDomains; ++domain) {
@@ -34,9 +49,7 @@ public:
                     if (IsIrregular(vertices[corner])) irregular |= 1u << corner;
                 }
             }
-            auto const visitAt = [&](double s, double t, double weight) {
-                visit(SurfacePlace{face, domain, s, t}, weight);
-            };
+            auto const visitAt = [&](Piece const& piece) { visit(domain, piece); };
             if (_surface.IsLoop())
                 VisitTriangle({0, 0}, {1, 0}, {0, 1}, irregular, 0, visitAt);
             else
@@ -66,12 +79,16 @@ private:
             VisitSquare(s, t + half, half, irregular & 8u, depth + 1, visit);
             return;
         }
+        Piece piece;
+        size_t k = 0;
         for (int j = 0; j < 3; ++j) {
-            for (int i = 0; i < 3; ++i) {
-                visit(s + size * kGaussNodes[i], t + size * kGaussNodes[j],
-                      size * size * kGaussWeights[i] * kGaussWeights[j]);
+            for (int i = 0; i < 3; ++i, ++k) {
+                piece.s[k] = s + size * kGaussNodes[i];
+                piece.t[k] = t + size * kGaussNodes[j];
+                piece.weights[k] = size * size * kGaussWeights[i] * kGaussWeights[j];
             }
         }
+        visit(piece);
     }
 
     template <class Visit>
@@ -89,16 +106,19 @@ private:
             return;
         }
         double const area = std::abs((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+        Piece piece;
+        size_t k = 0;
         for (int j = 0; j < 3; ++j) {
             double const width =
                 1.0 - kGaussNodes[j];  // a triangle is the square with one side collapsed
-            for (int i = 0; i < 3; ++i) {
+            for (int i = 0; i < 3; ++i, ++k) {
                 double const u = kGaussNodes[i] * width, v = kGaussNodes[j];
-                double const s = a[0] + u * (b[0] - a[0]) + v * (c[0] - a[0]);
-                double const t = a[1] + u * (b[1] - a[1]) + v * (c[1] - a[1]);
-                visit(s, t, area * kGaussWeights[i] * kGaussWeights[j] * width);
+                piece.s[k] = a[0] + u * (b[0] - a[0]) + v * (c[0] - a[0]);
+                piece.t[k] = a[1] + u * (b[1] - a[1]) + v * (c[1] - a[1]);
+                piece.weights[k] = area * kGaussWeights[i] * kGaussWeights[j] * width;
             }
         }
+        visit(piece);
     }
 
     LimitSurface const& _surface;

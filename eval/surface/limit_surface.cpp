@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
 
 #include "eval/parallel/rows.h"
+#include "eval/surface/ring_cache.h"
 #include "far_ext/error.h"
 #include "far_ext/rows/points.h"
 
@@ -44,34 +44,44 @@ std::vector<char> FindRegularVertices(Level const& level, bool isLoop) {
 
 }  // namespace
 
-LimitSurface::LimitSurface(Far::TopologyRefiner const& refiner, int fvarChannel)
+LimitSurface::LimitSurface(Far::TopologyRefiner const& refiner, int fvarChannel,
+                           size_t mostRingBytes)
     : _refiner(refiner),
       _channel(fvarChannel),
-      _cache(std::make_unique<RingCache>(refiner.GetSchemeType(), refiner.GetSchemeOptions())) {
+      _cache(std::make_unique<RingCache>(refiner.GetSchemeType(), refiner.GetSchemeOptions(),
+                                         mostRingBytes)) {
     if (_channel >= refiner.GetNumFVarChannels()) {
         throw Error(ErrorCode::BadOption,
                     fmt::format("face-varying channel {} does not exist; the mesh has {}", _channel,
                                 refiner.GetNumFVarChannels()));
     }
-    if (auto const excess = FindExcess(refiner)) {
+    CheckExcess(refiner);
+    Classify();
+}
+
+LimitSurface::~LimitSurface() = default;
+LimitSurface::LimitSurface(LimitSurface&&) noexcept = default;
+
+std::optional<LimitSurface::Excess> LimitSurface::FindExcess(Far::TopologyRefiner const& refiner,
+                                                             int level) {
+    Level const& topology = refiner.GetLevel(level);
+    for (Index vertex = 0; vertex < topology.GetNumVertices(); ++vertex) {
+        int const valence = topology.GetVertexFaces(vertex).size();
+        if (valence > kMaxValence) return Excess{false, vertex, valence};
+    }
+    for (Index face = 0; face < topology.GetNumFaces(); ++face) {
+        int const size = topology.GetFaceVertices(face).size();
+        if (size > kMaxCorners) return Excess{true, face, size};
+    }
+    return std::nullopt;
+}
+
+void LimitSurface::CheckExcess(Far::TopologyRefiner const& refiner, int level) {
+    if (auto const excess = FindExcess(refiner, level)) {
         throw Error(ErrorCode::TooLarge,
                     excess->Describe(
                         fmt::format("{} {}", excess->isFace ? "face" : "vertex", excess->element)));
     }
-    Classify();
-}
-
-std::optional<LimitSurface::Excess> LimitSurface::FindExcess(Far::TopologyRefiner const& refiner) {
-    Level const& level = refiner.GetLevel(0);
-    for (Index vertex = 0; vertex < level.GetNumVertices(); ++vertex) {
-        int const valence = level.GetVertexFaces(vertex).size();
-        if (valence > kMaxValence) return Excess{false, vertex, valence};
-    }
-    for (Index face = 0; face < level.GetNumFaces(); ++face) {
-        int const size = level.GetFaceVertices(face).size();
-        if (size > kMaxCorners) return Excess{true, face, size};
-    }
-    return std::nullopt;
 }
 
 std::string LimitSurface::Excess::Describe(std::string const& name) const {
@@ -100,35 +110,14 @@ void LimitSurface::Classify() {
                                             Sdc::Options::FVAR_LINEAR_ALL);
     auto const isRegularVertex = FindRegularVertices(level, IsLoop());
     _kinds.assign(level.GetNumFaces(), FaceKind::None);
-    _ringOfFace.assign(_kinds.size(), nullptr);
-
-    struct Scratch {
-        far_ext::FaceRingGatherer gatherer;
-        far_ext::FaceRing ring;
-        std::vector<Index> points;
-    };
-    tbb::enumerable_thread_specific<Scratch> scratchOfThread([&] {
-        return Scratch{
-            far_ext::FaceRingGatherer(level, _refiner.GetSchemeOptions(), _channel), {}, {}};
-    });
-    constexpr Index kFacesPerBlock = 1024;
-    ForEachBlock(level.GetNumFaces(), kFacesPerBlock, [&](Index begin, Index end) {
-        auto& [gatherer, ring, points] = scratchOfThread.local();
-        for (Index face = begin; face < end; ++face) {
-            if (level.IsFaceHole(face)) continue;
-            auto const corners = level.GetFaceVertices(face);
-            bool const isPlain = !isLinear && corners.size() == RegularSize(IsLoop()) &&
-                                 std::all_of(corners.begin(), corners.end(),
-                                             [&](Index v) { return isRegularVertex[v]; }) &&
-                                 (_channel < 0 || level.DoesFaceFVarTopologyMatch(face, _channel));
-            if (isPlain) {
-                _kinds[face] = FaceKind::Plain;
-                continue;
-            }
-            gatherer.Gather(face, ring, points);
-            _ringOfFace[face] = _cache->Find(ring);
-            _kinds[face] = FaceKind::Ring;
-        }
+    ForEachRow(level.GetNumFaces(), [&](Index face) {
+        if (level.IsFaceHole(face)) return;
+        auto const corners = level.GetFaceVertices(face);
+        bool const isPlain = !isLinear && corners.size() == RegularSize(IsLoop()) &&
+                             std::all_of(corners.begin(), corners.end(),
+                                         [&](Index v) { return isRegularVertex[v]; }) &&
+                             (_channel < 0 || level.DoesFaceFVarTopologyMatch(face, _channel));
+        _kinds[face] = isPlain ? FaceKind::Plain : FaceKind::Ring;
     });
 }
 

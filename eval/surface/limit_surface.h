@@ -9,24 +9,36 @@
 
 #include <opensubdiv/far/topologyRefiner.h>
 
-#include "eval/surface/ring_cache.h"
+#include "far_ext/types.h"
 
 namespace limn::eval {
 
+class RingCache;
+
 /// How the limit surface of a cage is put together, without any values: which faces have a limit,
-/// which of them are one polynomial patch, and the ring of every other. Works for vertex topology
-/// and for one face-varying channel (whose values form a limit surface of their own).
+/// which of them are one polynomial patch, and the rings of those that are asked for. Works for
+/// vertex topology and for one face-varying channel (whose values form a limit surface of their
+/// own).
 ///
 /// Domains  A quad (Loop: a triangle) has one domain, (s,t) in [0,1]^2 (Loop: s + t <= 1). Another
 ///          polygon has one domain per corner, its sub-quad with (0,0) at the corner and (1,1) at
 ///          the face's centre.
 /// Threads  Immutable once built but for the cache of rings, which guards itself.
+/// Memory   A byte per face, and rings up to `mostRingBytes`.
 class LimitSurface {
 public:
+    /// A dense scan's triangles have some thousand different rings of 10 KB, one vertex of 512
+    /// faces has rings of 0.2 GB.
+    static constexpr size_t kMostRingBytes = size_t{1} << 26;
+
     /// \param refiner      unrefined base topology, kept by reference: it must outlive the surface
     /// \param fvarChannel  face-varying channel, or -1 for vertices
+    /// \param mostRingBytes  memory for rings; no value depends on it
     /// \throws Error       BadOption: a channel that there is not. TooLarge: what FindExcess finds
-    explicit LimitSurface(Far::TopologyRefiner const& refiner, int fvarChannel = -1);
+    explicit LimitSurface(Far::TopologyRefiner const& refiner, int fvarChannel = -1,
+                          size_t mostRingBytes = kMostRingBytes);
+    ~LimitSurface();
+    LimitSurface(LimitSurface&&) noexcept;
 
     /// A ring's matrices take time and memory that grow with the third power of its size: 2 s and
     /// 0.2 GB at 512 faces, 2 s and 1.4 GB at 256 corners, eight times as much at twice as many.
@@ -42,7 +54,9 @@ public:
         std::string Describe(std::string const& name) const;
     };
     /// The first, if there is one.
-    static std::optional<Excess> FindExcess(Far::TopologyRefiner const& refiner);
+    static std::optional<Excess> FindExcess(Far::TopologyRefiner const& refiner, int level = 0);
+    /// \throws Error  TooLarge: there is one
+    static void CheckExcess(Far::TopologyRefiner const& refiner, int level = 0);
 
     /// False for holes and, with boundary rule none, for faces at a boundary.
     bool HasLimit(Index face) const { return _kinds[face] != FaceKind::None; }
@@ -75,7 +89,6 @@ private:
     int _channel;
     std::unique_ptr<RingCache> _cache;
     std::vector<FaceKind> _kinds;
-    std::vector<RingNode const*> _ringOfFace;  // null for plain patches
 };
 
 }  // namespace limn::eval

@@ -12,6 +12,9 @@ namespace limn::eval {
 
 namespace {
 
+/// Of pieces that are not too deep for second derivatives.
+constexpr double kMostCurvatureScale = size_t{1} << FaceTree::kCurvatureDepth;
+
 std::array<double, 6> EvaluatePolynomial(FaceTree const& tree, PatchPoint const& at, int channel) {
     double const* const c = at.coefficients + channel * tree.GetNumCoefficients();
     return tree.GetNumCoefficients() == kQuadCoefficients
@@ -94,7 +97,8 @@ SurfaceSample MakeSample(SurfaceDerivatives const& d, Orientation orientation) {
 
 SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t,
                              Orientation orientation) {
-    SurfaceDerivatives const here = EvaluateDerivatives(tree, domain, s, t);
+    PatchPoint at = tree.Locate(domain, s, t, FaceTree::kLimitDepth);
+    SurfaceDerivatives const here = EvaluateDerivatives(tree, at);
     SurfaceSample sample;
     sample.position = here.position;
     sample.tangentS = here.ds;
@@ -108,7 +112,8 @@ SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t,
         sample.isDegenerate = true;
         placeS = s + stepped * (centre - s);
         placeT = t + stepped * (centre - t);
-        shape = EvaluateDerivatives(tree, domain, placeS, placeT);
+        at = tree.Locate(domain, placeS, placeT, FaceTree::kLimitDepth);
+        shape = EvaluateDerivatives(tree, at);
         stepped *= 32.0;
     }
     if (!HasTangentPlane(shape)) {  // the face has collapsed to a line or a point
@@ -118,9 +123,12 @@ SurfaceSample EvaluateSample(FaceTree& tree, int domain, double s, double t,
     }
     sample.normal = GetSign(orientation) * shape.ds.cross(shape.dt).normalized();
 
-    PatchPoint const apart = tree.Locate(domain, placeS, placeT, FaceTree::kCurvatureDepth);
-    sample.isMoved = apart.isMoved;
-    SurfaceDerivatives const second = EvaluateDerivatives(tree, apart);
+    SurfaceDerivatives second = shape;
+    if (std::abs(at.scale) > kMostCurvatureScale) {  // elsewhere, `at` is the piece for both
+        PatchPoint const apart = tree.Locate(domain, placeS, placeT, FaceTree::kCurvatureDepth);
+        sample.isMoved = apart.isMoved;
+        second = EvaluateDerivatives(tree, apart);
+    }
     SurfaceDerivatives const& use = HasTangentPlane(second) ? second : shape;
     sample.curvature = ComputeCurvature(use.ds, use.dt, use.dss, use.dst, use.dtt, orientation);
     return sample;

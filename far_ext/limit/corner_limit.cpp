@@ -85,7 +85,7 @@ WeightRow BuildCornerLimit(FaceRing const& base, int corner, Sdc::SchemeType sch
     constexpr int kMaxSteps = 64;
     FaceRing ring = base;
     std::vector<WeightRow> points =
-        WeightRow::Identity(ring.numPoints);  // of `ring`, over those of `base`
+        WeightRow::Identity(ring.GetNumPoints());  // of `ring`, over those of `base`
     for (int stepCount = 0; stepCount < kMaxSteps; ++stepCount) {
         RingSubdivision const subdivision = RingSubdivision::Build(ring, scheme, options);
         if (subdivision.IsRegular())
@@ -93,10 +93,11 @@ WeightRow BuildCornerLimit(FaceRing const& base, int corner, Sdc::SchemeType sch
         RingSubdivision::Child const& child = subdivision.children[corner];
         // OpenSubdiv numbers a child's corners like its parent's, those of a polygon's child from
         // the vertex.
-        bool const isRenumbered = scheme != Sdc::SCHEME_LOOP && ring.faceSizes[0] != 4;
+        bool const isRenumbered = scheme != Sdc::SCHEME_LOOP && ring.GetFaceSizes()[0] != 4;
         corner = isRenumbered ? 0 : corner;
         if (child.ring == ring)
-            return Prune(FindStationaryLimit(child.weights, ring.faceVertices[corner], points));
+            return Prune(
+                FindStationaryLimit(child.weights, ring.GetFaceVertices()[corner], points));
         std::vector<WeightRow> childPoints;
         childPoints.reserve(child.weights.GetNumRows());
         for (int row = 0; row < child.weights.GetNumRows(); ++row)
@@ -104,7 +105,7 @@ WeightRow BuildCornerLimit(FaceRing const& base, int corner, Sdc::SchemeType sch
         points = std::move(childPoints);
         ring = child.ring;
     }
-    return Prune(points[ring.faceVertices[corner]]);
+    return Prune(points[ring.GetFaceVertices()[corner]]);
 }
 
 }  // namespace limn::far_ext

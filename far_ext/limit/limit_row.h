@@ -77,7 +77,7 @@ private:
         bool operator==(CornerKey const&) const = default;
     };
     struct CornerHash {
-        size_t operator()(CornerKey const& key) const { return key.ring.Hash() + key.corner; }
+        size_t operator()(CornerKey const& key) const { return key.ring.GetHash() + key.corner; }
     };
 
     LimitRow::Kind Classify(Index vertex) const;

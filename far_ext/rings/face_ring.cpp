@@ -13,17 +13,39 @@
 
 namespace limn::far_ext {
 
-size_t FaceRing::Hash() const {
+int FaceRing::GetNumEdges() const {
+    return static_cast<int>(Get(Part::Edges).size() / kWordsPerEdge);
+}
+
+FaceRing::Edge FaceRing::GetEdge(int edge) const {
+    auto const words = Get(Part::Edges).subspan(edge * kWordsPerEdge, kWordsPerEdge);
+    return {{words[0], words[1]}, std::bit_cast<float>(words[2]), words[3] != 0};
+}
+
+int FaceRing::GetNumCorners() const {
+    return static_cast<int>(Get(Part::Corners).size() / kWordsPerCorner);
+}
+
+FaceRing::Corner FaceRing::GetCorner(int corner) const {
+    auto const words = Get(Part::Corners).subspan(corner * kWordsPerCorner, kWordsPerCorner);
+    size_t const numFaces = words[3], numEdges = words[4];
+    auto const around = Get(Part::Surroundings).subspan(words[5]);
+    return {words[0], std::bit_cast<float>(words[1]), words[2] != 0, around.first(numFaces),
+            around.subspan(numFaces, numEdges)};
+}
+
+void FaceRing::Assign(Parts const& parts) {
+    _words.clear();
+    size_t end = kNumParts + 1;
+    _words.push_back(static_cast<Index>(end));
+    for (auto const& part : parts) _words.push_back(static_cast<Index>(end += part.size()));
+    _words.reserve(end);
+    for (auto const& part : parts) _words.insert(_words.end(), part.begin(), part.end());
+
     uint64_t hash = 0x9e3779b97f4a7c15u;
-    auto const add = [&](uint64_t value) {
-        hash = std::rotl(hash ^ value, 23) * 0xd6e8feb86659fd93u;
-    };
-    for (int size : faceSizes) add(static_cast<uint64_t>(size));
-    for (Index vertex : faceVertices) add(static_cast<uint64_t>(vertex));
-    for (Index value : valueIndices) add(static_cast<uint64_t>(value));
-    for (Edge const& edge : edges) add(std::bit_cast<uint32_t>(edge.sharpness));
-    for (Corner const& corner : corners) add(std::bit_cast<uint32_t>(corner.sharpness));
-    return hash ^ (hash >> 32);
+    for (Index word : _words)
+        hash = std::rotl(hash ^ static_cast<uint32_t>(word), 23) * 0xd6e8feb86659fd93u;
+    _hash = hash ^ (hash >> 32);
 }
 
 namespace {
@@ -41,10 +63,9 @@ int FindFirstNumbered(int size, NumberOf numberOf) {
 }  // namespace
 
 FaceRingGatherer::FaceRingGatherer(Far::TopologyLevel const& level, Sdc::Options options,
-                                   int channel, Starts starts)
+                                   int channel)
     : _level(level),
       _channel(channel),
-      _starts(starts),
       _isChaikin(options.GetCreasingMethod() == Sdc::Options::CREASE_CHAIKIN) {
     _faces.Resize(level.GetNumFaces());
     _vertices.Resize(level.GetNumVertices());
@@ -91,87 +112,74 @@ void FaceRingGatherer::FindCreaseEnds(Index face) {
     }
 }
 
-/// The corner a face of the ring starts with.
-int FaceRingGatherer::FindStart(Far::ConstIndexArray vertices) const {
-    if (_starts == Starts::AsInLevel) return 0;
-    return FindFirstNumbered(vertices.size(), [&](int i) { return _vertices[vertices[i]]; });
+/// The next face of the ring, from the corner that is numbered first.
+void FaceRingGatherer::AddFace(Index face) {
+    auto const vertices = _level.GetFaceVertices(face);
+    int const size = vertices.size();
+    int const start = FindFirstNumbered(size, [&](int i) { return _vertices[vertices[i]]; });
+    auto const add = [&](auto const& members, Numbering& numbering, Part part) {
+        auto& list = PartOf(part);
+        for (int i = start; i < size; ++i) list.push_back(numbering.Add(members[i]));
+        for (int i = 0; i < start; ++i) list.push_back(numbering.Add(members[i]));
+    };
+    PartOf(Part::FaceSizes).push_back(size);
+    add(vertices, _vertices, Part::FaceVertices);
+    add(_level.GetFaceEdges(face), _edges, Part::FaceEdges);
+    if (_channel >= 0) add(_level.GetFaceFVarValues(face, _channel), _values, Part::FaceValues);
 }
 
-void FaceRingGatherer::GatherPoints(Index face, std::vector<Index>& points) {
-    NumberFaces(face);
-    Numbering& numbering = _channel >= 0 ? _values : _vertices;
-    for (Index inRing : _faces.GetMembers()) {
-        auto const corners = _channel >= 0 ? _level.GetFaceFVarValues(inRing, _channel)
-                                           : _level.GetFaceVertices(inRing);
-        for (Index point : corners) numbering.Add(point);
+/// Their ends; sharpness comes with the corners.
+void FaceRingGatherer::AddEdges() {
+    for (Index edge : _edges.GetMembers()) {
+        auto const ends = _level.GetEdgeVertices(edge);
+        auto const [low, high] = std::minmax({_vertices[ends[0]], _vertices[ends[1]]});
+        PartOf(Part::Edges).insert(PartOf(Part::Edges).end(), {low, high, 0, 0});
     }
-    points = numbering.GetMembers();
-    numbering.Reset();
-    _faces.Reset();
 }
 
 /// What the level says about a vertex, and the sharpness of its edges.
-void FaceRingGatherer::FillCorner(Index vertex, FaceRing::Corner& corner, FaceRing& ring) const {
-    corner.vertex = _vertices[vertex];
-    corner.faces.clear();
-    corner.edges.clear();
-    corner.sharpness = _level.GetVertexSharpness(vertex);
-    corner.isNonManifold = _level.IsVertexNonManifold(vertex);
-    for (Index around : _level.GetVertexFaces(vertex)) corner.faces.push_back(_faces[around]);
+void FaceRingGatherer::AddCorner(Index vertex) {
+    auto const faces = _level.GetVertexFaces(vertex);
+    auto const edges = _level.GetVertexEdges(vertex);
+    bool const isNonManifold = _level.IsVertexNonManifold(vertex);
+    auto& around = PartOf(Part::Surroundings);
+    PartOf(Part::Corners)
+        .insert(PartOf(Part::Corners).end(),
+                {_vertices[vertex], std::bit_cast<Index>(_level.GetVertexSharpness(vertex)),
+                 isNonManifold, faces.size(), edges.size(), static_cast<Index>(around.size())});
     int numSemiSharp = 0;
-    for (Index around : _level.GetVertexEdges(vertex)) {
-        corner.edges.push_back(_edges[around]);
-        FaceRing::Edge& edge = ring.edges[_edges[around]];
-        edge.sharpness = _level.GetEdgeSharpness(around);
-        edge.isNonManifold = _level.IsEdgeNonManifold(around);
-        numSemiSharp += Sdc::Crease::IsSemiSharp(edge.sharpness);
+    for (Index edge : edges) {
+        float const sharpness = _level.GetEdgeSharpness(edge);
+        Index* const words = &PartOf(Part::Edges)[_edges[edge] * FaceRing::kWordsPerEdge];
+        words[2] = std::bit_cast<Index>(sharpness);
+        words[3] = _level.IsEdgeNonManifold(edge);
+        numSemiSharp += Sdc::Crease::IsSemiSharp(sharpness);
     }
     // Chaikin's averages over more than two edges are float sums in their order, which has to be
     // the level's: rounded in another one, two faces would not see the same sharpness.
     bool const keepsOrder = _isChaikin && numSemiSharp > 2;
     // Round an interior vertex the order may start anywhere; starting at the face makes it unique.
-    if (!keepsOrder && !corner.isNonManifold && corner.faces.size() == corner.edges.size()) {
-        auto const start = std::min_element(corner.faces.begin(), corner.faces.end());
-        std::rotate(corner.edges.begin(), corner.edges.begin() + (start - corner.faces.begin()),
-                    corner.edges.end());
-        std::rotate(corner.faces.begin(), start, corner.faces.end());
-    }
+    bool const isCycle = !keepsOrder && !isNonManifold && faces.size() == edges.size();
+    int const start =
+        isCycle ? FindFirstNumbered(faces.size(), [&](int i) { return _faces[faces[i]]; }) : 0;
+    auto const add = [&](auto const& members, Numbering const& numbering) {
+        for (int i = start; i < members.size(); ++i) around.push_back(numbering[members[i]]);
+        for (int i = 0; i < start; ++i) around.push_back(numbering[members[i]]);
+    };
+    add(faces, _faces);
+    add(edges, _edges);
 }
 
 void FaceRingGatherer::Gather(Index face, FaceRing& ring, std::vector<Index>& points) {
-    // A ring that is used again keeps its memory.
-    for (auto* list : {&ring.faceVertices, &ring.faceEdges, &ring.valueIndices}) list->clear();
-    ring.faceSizes.clear();
-    ring.edges.clear();
+    for (auto& part : _parts) part.clear();
     NumberFaces(face);
-    ring.corners.resize(_level.GetFaceVertices(face).size());
-    ring.creaseEnds.resize(_creaseEnds.size());
-    for (Index inRing : _faces.GetMembers()) {
-        auto const vertices = _level.GetFaceVertices(inRing);
-        int const size = vertices.size(), start = inRing == face ? 0 : FindStart(vertices);
-        auto const add = [&](auto const& members, Numbering& numbering, std::vector<Index>& list) {
-            for (int i = start; i < size; ++i) list.push_back(numbering.Add(members[i]));
-            for (int i = 0; i < start; ++i) list.push_back(numbering.Add(members[i]));
-        };
-        ring.faceSizes.push_back(size);
-        add(vertices, _vertices, ring.faceVertices);
-        add(_level.GetFaceEdges(inRing), _edges, ring.faceEdges);
-        if (_channel >= 0)
-            add(_level.GetFaceFVarValues(inRing, _channel), _values, ring.valueIndices);
-    }
-    ring.numVertices = static_cast<Index>(_vertices.GetMembers().size());
+    for (Index inRing : _faces.GetMembers()) AddFace(inRing);
+    AddEdges();
+    for (Index vertex : _level.GetFaceVertices(face)) AddCorner(vertex);
+    for (Index vertex : _creaseEnds) AddCorner(vertex);
     points = (_channel >= 0 ? _values : _vertices).GetMembers();
-    ring.numPoints = static_cast<Index>(points.size());
-
-    for (Index edge : _edges.GetMembers()) {
-        auto const ends = _level.GetEdgeVertices(edge);
-        Index a = _vertices[ends[0]], b = _vertices[ends[1]];
-        if (_starts == Starts::Canonical && a > b) std::swap(a, b);
-        ring.edges.push_back({{a, b}});
-    }
-    auto corner = ring.corners.begin(), end = ring.creaseEnds.begin();
-    for (Index vertex : _level.GetFaceVertices(face)) FillCorner(vertex, *corner++, ring);
-    for (Index vertex : _creaseEnds) FillCorner(vertex, *end++, ring);
+    PartOf(Part::Counts) = {_vertices.GetCount(), static_cast<Index>(points.size())};
+    ring.Assign(_parts);
     _faces.Reset();
     _vertices.Reset();
     _edges.Reset();
@@ -187,31 +195,27 @@ struct RingTopology {
     std::vector<char> isNonManifold;  // per vertex
 
     explicit RingTopology(FaceRing const& r) : ring(r) {
-        edgeFaces.resize(ring.edges.size());
-        vertexFaces.resize(ring.numVertices);
+        edgeFaces.resize(ring.GetNumEdges());
+        vertexFaces.resize(ring.GetNumVertices());
         vertexEdges.resize(vertexFaces.size());
         // The faces round a vertex of the rim are not all here; its rules are of no consequence.
         isNonManifold.assign(vertexFaces.size(), 1);
         size_t corner = 0;
-        for (Index face = 0; face < static_cast<Index>(ring.faceSizes.size()); ++face) {
-            for (int i = 0; i < ring.faceSizes[face]; ++i, ++corner) {
-                edgeFaces[ring.faceEdges[corner]].push_back(face);
-                vertexFaces[ring.faceVertices[corner]].push_back(face);
+        for (Index face = 0; face < ring.GetNumFaces(); ++face) {
+            for (int i = 0; i < ring.GetFaceSizes()[face]; ++i, ++corner) {
+                edgeFaces[ring.GetFaceEdges()[corner]].push_back(face);
+                vertexFaces[ring.GetFaceVertices()[corner]].push_back(face);
             }
         }
-        for (Index edge = 0; edge < static_cast<Index>(ring.edges.size()); ++edge) {
-            auto const& [a, b] = ring.edges[edge].vertices;
-            vertexEdges[a].push_back(edge);
-            vertexEdges[b].push_back(edge);
+        for (Index edge = 0; edge < ring.GetNumEdges(); ++edge) {
+            for (Index end : ring.GetEdge(edge).vertices) vertexEdges[end].push_back(edge);
         }
-        for (FaceRing::Corner const& known : ring.corners) SetSurroundings(known);
-        for (FaceRing::Corner const& known : ring.creaseEnds) SetSurroundings(known);
-    }
-
-    void SetSurroundings(FaceRing::Corner const& of) {
-        vertexFaces[of.vertex] = of.faces;
-        vertexEdges[of.vertex] = of.edges;
-        isNonManifold[of.vertex] = of.isNonManifold;
+        for (int i = 0; i < ring.GetNumCorners(); ++i) {
+            FaceRing::Corner const known = ring.GetCorner(i);
+            vertexFaces[known.vertex].assign(known.faces.begin(), known.faces.end());
+            vertexEdges[known.vertex].assign(known.edges.begin(), known.edges.end());
+            isNonManifold[known.vertex] = known.isNonManifold;
+        }
     }
 };
 
@@ -228,17 +232,16 @@ template <>
 bool TopologyRefinerFactory<RingTopology>::resizeComponentTopology(TopologyRefiner& refiner,
                                                                    RingTopology const& topology) {
     auto const& ring = topology.ring;
-    setNumBaseFaces(refiner, static_cast<int>(ring.faceSizes.size()));
-    setNumBaseEdges(refiner, static_cast<int>(ring.edges.size()));
-    setNumBaseVertices(refiner, ring.numVertices);
-    for (size_t face = 0; face < ring.faceSizes.size(); ++face) {
-        setNumBaseFaceVertices(refiner, static_cast<Index>(face), ring.faceSizes[face]);
+    setNumBaseFaces(refiner, ring.GetNumFaces());
+    setNumBaseEdges(refiner, ring.GetNumEdges());
+    setNumBaseVertices(refiner, ring.GetNumVertices());
+    for (Index face = 0; face < ring.GetNumFaces(); ++face) {
+        setNumBaseFaceVertices(refiner, face, ring.GetFaceSizes()[face]);
     }
-    for (size_t edge = 0; edge < ring.edges.size(); ++edge) {
-        setNumBaseEdgeFaces(refiner, static_cast<Index>(edge),
-                            static_cast<int>(topology.edgeFaces[edge].size()));
+    for (Index edge = 0; edge < ring.GetNumEdges(); ++edge) {
+        setNumBaseEdgeFaces(refiner, edge, static_cast<int>(topology.edgeFaces[edge].size()));
     }
-    for (Index vertex = 0; vertex < ring.numVertices; ++vertex) {
+    for (Index vertex = 0; vertex < ring.GetNumVertices(); ++vertex) {
         setNumBaseVertexFaces(refiner, vertex,
                               static_cast<int>(topology.vertexFaces[vertex].size()));
         // OpenSubdiv sizes buffers for a vertex' faces by the largest number of edges it has heard
@@ -258,28 +261,28 @@ bool TopologyRefinerFactory<RingTopology>::assignComponentTopology(TopologyRefin
     auto const copy = [](auto const& from, IndexArray to) {
         std::copy(from.begin(), from.end(), to.begin());
     };
-    auto vertex = ring.faceVertices.begin();
-    auto edge = ring.faceEdges.begin();
-    for (Index face = 0; face < static_cast<Index>(ring.faceSizes.size()); ++face) {
-        int const size = ring.faceSizes[face];
+    auto vertex = ring.GetFaceVertices().begin();
+    auto edge = ring.GetFaceEdges().begin();
+    for (Index face = 0; face < ring.GetNumFaces(); ++face) {
+        int const size = ring.GetFaceSizes()[face];
         std::copy_n(vertex, size, getBaseFaceVertices(refiner, face).begin());
         std::copy_n(edge, size, getBaseFaceEdges(refiner, face).begin());
         vertex += size;
         edge += size;
     }
-    for (Index e = 0; e < static_cast<Index>(ring.edges.size()); ++e) {
-        std::copy_n(ring.edges[e].vertices, 2, getBaseEdgeVertices(refiner, e).begin());
+    for (Index e = 0; e < ring.GetNumEdges(); ++e) {
+        copy(ring.GetEdge(e).vertices, getBaseEdgeVertices(refiner, e));
         copy(topology.edgeFaces[e], getBaseEdgeFaces(refiner, e));
     }
-    for (Index v = 0; v < ring.numVertices; ++v) {
+    for (Index v = 0; v < ring.GetNumVertices(); ++v) {
         copy(topology.vertexFaces[v], getBaseVertexFaces(refiner, v));
         copy(topology.vertexEdges[v], getBaseVertexEdges(refiner, v));
     }
     populateBaseLocalIndices(refiner);
-    for (Index e = 0; e < static_cast<Index>(ring.edges.size()); ++e) {
-        if (ring.edges[e].isNonManifold) setBaseEdgeNonManifold(refiner, e, true);
+    for (Index e = 0; e < ring.GetNumEdges(); ++e) {
+        if (ring.GetEdge(e).isNonManifold) setBaseEdgeNonManifold(refiner, e, true);
     }
-    for (Index v = 0; v < ring.numVertices; ++v) {
+    for (Index v = 0; v < ring.GetNumVertices(); ++v) {
         if (topology.isNonManifold[v]) setBaseVertexNonManifold(refiner, v, true);
     }
     return true;
@@ -289,10 +292,11 @@ template <>
 bool TopologyRefinerFactory<RingTopology>::assignComponentTags(TopologyRefiner& refiner,
                                                                RingTopology const& topology) {
     auto const& ring = topology.ring;
-    for (size_t edge = 0; edge < ring.edges.size(); ++edge) {
-        setBaseEdgeSharpness(refiner, static_cast<Index>(edge), ring.edges[edge].sharpness);
+    for (Index edge = 0; edge < ring.GetNumEdges(); ++edge) {
+        setBaseEdgeSharpness(refiner, edge, ring.GetEdge(edge).sharpness);
     }
-    for (auto const& corner : ring.corners) {
+    for (int i = 0; i < ring.GetFaceSizes()[0]; ++i) {
+        auto const corner = ring.GetCorner(i);
         setBaseVertexSharpness(refiner, corner.vertex, corner.sharpness);
     }
     return true;
@@ -303,12 +307,12 @@ bool TopologyRefinerFactory<RingTopology>::assignFaceVaryingTopology(TopologyRef
                                                                      RingTopology const& topology) {
     auto const& ring = topology.ring;
     if (!ring.IsFaceVarying()) return true;
-    int const channel = createBaseFVarChannel(refiner, ring.numPoints);
-    auto value = ring.valueIndices.begin();
-    for (Index face = 0; face < static_cast<Index>(ring.faceSizes.size()); ++face) {
-        std::copy_n(value, ring.faceSizes[face],
+    int const channel = createBaseFVarChannel(refiner, ring.GetNumPoints());
+    auto value = ring.GetFacePoints().begin();
+    for (Index face = 0; face < ring.GetNumFaces(); ++face) {
+        std::copy_n(value, ring.GetFaceSizes()[face],
                     getBaseFaceFVarValues(refiner, face, channel).begin());
-        value += ring.faceSizes[face];
+        value += ring.GetFaceSizes()[face];
     }
     return true;
 }

@@ -48,7 +48,7 @@ std::vector<WeightRow> RefineIdentity(FaceRing const& ring, Far::TopologyRefiner
                                       bool isVarying) {
     Far::PrimvarRefinerReal<double> const primvars(refiner);
     Level const& fine = refiner.GetLevel(1);
-    auto const coarseRows = WeightRow::Identity(ring.numPoints);
+    auto const coarseRows = WeightRow::Identity(ring.GetNumPoints());
     std::vector<WeightRow> rows;
     if (ring.IsFaceVarying()) {
         rows.resize(fine.GetNumFVarValues(0));
@@ -69,9 +69,9 @@ class PatchFinder {
 public:
     PatchFinder(FaceRing const& ring, Far::TopologyRefiner const& refiner,
                 std::vector<WeightRow> const& fineRows)
-        : _ring(ring), _refiner(refiner), _fineRows(fineRows), _size(ring.faceSizes[0]) {
+        : _ring(ring), _refiner(refiner), _fineRows(fineRows), _size(ring.GetFaceSizes()[0]) {
         int first = 0;
-        for (int size : ring.faceSizes) {
+        for (int size : ring.GetFaceSizes()) {
             _firstCorner.push_back(first);
             first += size;
         }
@@ -84,9 +84,11 @@ public:
         auto const isSemiSharp = [](auto const& part) {
             return part.sharpness > 0.0f && part.sharpness < kInfiniteSharpness;
         };
-        if (std::any_of(_ring.edges.begin(), _ring.edges.end(), isSemiSharp) ||
-            std::any_of(_ring.corners.begin(), _ring.corners.end(), isSemiSharp)) {
-            return {};
+        for (int i = 0; i < _ring.GetNumEdges(); ++i) {
+            if (isSemiSharp(_ring.GetEdge(i))) return {};
+        }
+        for (int i = 0; i < _size; ++i) {
+            if (isSemiSharp(_ring.GetCorner(i))) return {};
         }
         return isLoop ? FindBoxSpline() : FindBSpline();
     }
@@ -106,23 +108,23 @@ private:
     }
 
     Index Vertex(int face, int corner) const {
-        return _ring.faceVertices[_firstCorner[face] + corner % _ring.faceSizes[face]];
+        return _ring.GetFaceVertices()[_firstCorner[face] + corner % _ring.GetFaceSizes()[face]];
     }
     Index Point(int face, int corner) const {
-        auto const& points = _ring.IsFaceVarying() ? _ring.valueIndices : _ring.faceVertices;
-        return points[_firstCorner[face] + corner % _ring.faceSizes[face]];
+        return _ring.GetFacePoints()[_firstCorner[face] + corner % _ring.GetFaceSizes()[face]];
     }
 
     /// The one face on the other side of an edge, if the surface goes on smoothly across it.
     FaceEdge Across(int face, int edge) const {
-        Index const shared = _ring.faceEdges[_firstCorner[face] + edge % _ring.faceSizes[face]];
-        if (_ring.edges[shared].sharpness > 0.0f) return {};
+        Index const shared =
+            _ring.GetFaceEdges()[_firstCorner[face] + edge % _ring.GetFaceSizes()[face]];
+        if (_ring.GetEdge(shared).sharpness > 0.0f) return {};
         Index const from = Point(face, edge), to = Point(face, edge + 1);
         FaceEdge found;
-        for (int other = 0; other < static_cast<int>(_ring.faceSizes.size()); ++other) {
+        for (int other = 0; other < _ring.GetNumFaces(); ++other) {
             if (other == face) continue;
-            for (int i = 0; i < _ring.faceSizes[other]; ++i) {
-                if (_ring.faceEdges[_firstCorner[other] + i] != shared) continue;
+            for (int i = 0; i < _ring.GetFaceSizes()[other]; ++i) {
+                if (_ring.GetFaceEdges()[_firstCorner[other] + i] != shared) continue;
                 if (found.Exists() || Point(other, i) != to || Point(other, i + 1) != from)
                     return {};
                 found = {other, i};
@@ -232,7 +234,7 @@ private:
         for (int i = 0; i < 4; ++i) {
             across[i] = Across(0, i);
             isSharp[i] = !across[i].Exists();
-            if (!isSharp[i] && _ring.faceSizes[across[i].face] != 4) return {};
+            if (!isSharp[i] && _ring.GetFaceSizes()[across[i].face] != 4) return {};
         }
         Grid grid;
         PlaceCorners(grid);
@@ -249,7 +251,7 @@ private:
                     if (isSharp[i] || isSharp[previous] || TouchesSharpEdge(i)) return {};
                     // Over the edge behind corner i, then over that face's edge at the corner.
                     FaceEdge const diagonal = Across(across[i].face, across[i].edge + 1);
-                    if (!diagonal.Exists() || _ring.faceSizes[diagonal.face] != 4) return {};
+                    if (!diagonal.Exists() || _ring.GetFaceSizes()[diagonal.face] != 4) return {};
                     grid[kDiagonal[i][0]][kDiagonal[i][1]] =
                         One(Point(diagonal.face, diagonal.edge + 3));
                     break;
@@ -277,9 +279,9 @@ private:
     }
 
     bool TouchesSharpEdge(int corner) const {
-        auto const& edges = _ring.corners[corner].edges;
+        auto const edges = _ring.GetCorner(corner).edges;
         return std::any_of(edges.begin(), edges.end(),
-                           [&](Index edge) { return _ring.edges[edge].sharpness > 0.0f; });
+                           [&](Index edge) { return _ring.GetEdge(edge).sharpness > 0.0f; });
     }
 
     // -------- triangles
@@ -371,24 +373,35 @@ SubDomain GetChildDomain(bool isTriangle, size_t child) {
 
 /// Points of the faces that share a point, not only a vertex, with the face.
 std::vector<Index> FindSupport(FaceRing const& ring) {
-    auto const& points = ring.IsFaceVarying() ? ring.valueIndices : ring.faceVertices;
-    std::vector<char> isOwn(ring.numPoints, 0), isSupport(isOwn);
-    for (int i = 0; i < ring.faceSizes[0]; ++i) isOwn[points[i]] = 1;
+    auto const points = ring.GetFacePoints();
+    std::vector<char> isOwn(ring.GetNumPoints(), 0), isSupport(isOwn);
+    for (int i = 0; i < ring.GetFaceSizes()[0]; ++i) isOwn[points[i]] = 1;
     auto first = points.begin();
-    for (int size : ring.faceSizes) {
+    for (int size : ring.GetFaceSizes()) {
         if (std::any_of(first, first + size, [&](Index point) { return isOwn[point]; })) {
             std::for_each(first, first + size, [&](Index point) { isSupport[point] = 1; });
         }
         first += size;
     }
     std::vector<Index> support;
-    for (Index point = 0; point < ring.numPoints; ++point) {
+    for (Index point = 0; point < ring.GetNumPoints(); ++point) {
         if (isSupport[point]) support.push_back(point);
     }
     return support;
 }
 
 }  // namespace
+
+size_t RingSubdivision::GetNumBytes() const {
+    auto const count = [](SparseRows const& rows) {
+        return rows.offsets.capacity() * sizeof(int) +
+               rows.weights.capacity() * (sizeof(Index) + sizeof(double));
+    };
+    size_t sum = sizeof(*this) + count(patch) + support.capacity() * sizeof(Index);
+    for (Child const& child : children)
+        sum += sizeof(child) + child.ring.GetNumBytes() + count(child.weights);
+    return sum;
+}
 
 RingSubdivision RingSubdivision::Build(FaceRing const& ring, Sdc::SchemeType scheme,
                                        Sdc::Options options, Use use) {
@@ -402,11 +415,9 @@ RingSubdivision RingSubdivision::Build(FaceRing const& ring, Sdc::SchemeType sch
     }
 
     Level const coarse = refiner->GetLevel(0), fine = refiner->GetLevel(1);
-    using Starts = FaceRingGatherer::Starts;
-    FaceRingGatherer gatherer(fine, options, ring.IsFaceVarying() ? 0 : -1,
-                              use == Use::Limit ? Starts::AsInLevel : Starts::Canonical);
+    FaceRingGatherer gatherer(fine, options, ring.IsFaceVarying() ? 0 : -1);
     bool const isLoop = scheme == Sdc::SCHEME_LOOP;
-    bool const isSplitInSubFaces = !isLoop && ring.faceSizes[0] != 4;
+    bool const isSplitInSubFaces = !isLoop && ring.GetFaceSizes()[0] != 4;
     std::vector<Index> points;
     for (Index childFace : coarse.GetFaceChildFaces(0)) {
         Child child;

@@ -43,6 +43,7 @@ struct RingSubdivision {
     std::vector<Index> support;
 
     bool IsRegular() const { return patch.GetNumRows() != 0; }
+    size_t GetNumBytes() const;
 
     /// What a ring is subdivided for: its limit; or its refined points, vertex by vertex or with
     /// OpenSubdiv's varying (linear) rule, where every ring has children and no patch.

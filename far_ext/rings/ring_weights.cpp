@@ -6,11 +6,10 @@ namespace limn::far_ext {
 namespace {
 
 DenseRows MakeCorners(FaceRing const& ring) {
-    auto const& points = ring.IsFaceVarying() ? ring.valueIndices : ring.faceVertices;
-    int const size = ring.faceSizes[0];
-    DenseRows rows{ring.numPoints,
-                   std::vector<double>(static_cast<size_t>(size) * ring.numPoints, 0.0)};
-    for (int i = 0; i < size; ++i) rows[i][points[i]] = 1.0;
+    int const size = ring.GetFaceSizes()[0];
+    DenseRows rows{ring.GetNumPoints(),
+                   std::vector<double>(static_cast<size_t>(size) * ring.GetNumPoints(), 0.0)};
+    for (int i = 0; i < size; ++i) rows[i][ring.GetFacePoints()[i]] = 1.0;
     return rows;
 }
 
@@ -41,8 +40,8 @@ void RingWeights::Subdivide(Node& node) {
 
 DenseRows RingWeights::Compose(Node& node, int depth) {
     if (node.children.empty()) Subdivide(node);
-    FaceLattice const& lattice = _lattices.Get(node.ring->faceSizes[0], depth);
-    int const numColumns = node.ring->numPoints;
+    FaceLattice const& lattice = _lattices.Get(node.ring->GetFaceSizes()[0], depth);
+    int const numColumns = node.ring->GetNumPoints();
     DenseRows rows{numColumns, std::vector<double>(lattice.places.size() * numColumns, 0.0)};
     std::vector<char> isDone(lattice.places.size(), 0);
     for (size_t c = 0; c < node.children.size(); ++c) {

@@ -47,7 +47,7 @@ public:
 
 private:
     struct Hash {
-        size_t operator()(FaceRing const& ring) const { return ring.Hash(); }
+        size_t operator()(FaceRing const& ring) const { return ring.GetHash(); }
     };
 
     void Subdivide(Node& node);

@@ -176,8 +176,7 @@ public:
           _lattices(refiner.GetSchemeType()),
           _weights(refiner, options.mode == Mode::Varying, _lattices),
           _gatherer(_base, refiner.GetSchemeOptions(),
-                    options.mode == Mode::FaceVarying ? options.fvarChannel : -1,
-                    FaceRingGatherer::Starts::Canonical),
+                    options.mode == Mode::FaceVarying ? options.fvarChannel : -1),
           _isDone(CountPoints(_fine, options), 0),
           _builder(CountPoints(_fine, options), CountPoints(_base, options), 1) {}
 
@@ -209,7 +208,7 @@ private:
     void AddFace(Index face) {
         _gatherer.Gather(face, _ring, _points);
         RingParts const& parts = GetParts(_ring);
-        FaceLattice const& lattice = _lattices.Get(_ring.faceSizes[0], _depth);
+        FaceLattice const& lattice = _lattices.Get(_ring.GetFaceSizes()[0], _depth);
         Index first = face;
         for (int level = 0; level < _depth; ++level)
             first = _refiner.GetLevel(level).GetFaceChildFaces(first)[0];
@@ -259,7 +258,7 @@ private:
         RingParts& parts = found->second;
         if (!isNew) return parts;
         DenseRows const& rows = _weights.Get(node, _depth);
-        FaceLattice const& lattice = _lattices.Get(ring.faceSizes[0], _depth);
+        FaceLattice const& lattice = _lattices.Get(ring.GetFaceSizes()[0], _depth);
         parts.inside = MakePart(rows, lattice.inside);
         for (auto const& points : lattice.onEdge) parts.edges.push_back(MakePart(rows, points));
         for (int point : lattice.atCorner) parts.corners.push_back(MakePart(rows, {point}));

@@ -7,80 +7,9 @@
 #include "engine/scene/refine.h"
 #include "far_ext/topology/refiner.h"
 #include "support/meshes.h"
+#include "support/triangle_flipper.h"
 
 namespace limn::test {
-
-namespace {
-
-/// Triangles with what lies across each edge, for flipping.
-class TriangleFlipper {
-public:
-    explicit TriangleFlipper(engine::Scene& scene)
-        : _v(scene.cage.faceVertices), _valence(static_cast<size_t>(scene.cage.numVertices), 0) {
-        auto const refiner = far_ext::CreateRefiner(scene.cage);
-        auto const level = refiner->GetLevel(0);
-        _across.assign(_v.size(), -1);
-        for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
-            auto const faces = level.GetEdgeFaces(edge);
-            auto const places = level.GetEdgeFaceLocalIndices(edge);
-            _across[static_cast<size_t>(3 * faces[0] + places[0])] = 3 * faces[1] + places[1];
-            _across[static_cast<size_t>(3 * faces[1] + places[1])] = 3 * faces[0] + places[0];
-        }
-        for (Index vertex : _v) ++_valence[static_cast<size_t>(vertex)];
-    }
-
-    int GetNumEdges() const { return static_cast<int>(_v.size()); }
-
-    void Flip(int e) {
-        int const other = At(_across, e), f = e / 3 * 3, g = other / 3 * 3;
-        Index const a = At(_v, e), b = At(_v, Next(e)), c = At(_v, Next(Next(e))),
-                    d = At(_v, Next(Next(other)));
-        if (At(_valence, a) <= 3 || At(_valence, b) <= 3 || c == d || AreJoined(Next(Next(e)), d))
-            return;
-        int const bc = At(_across, Next(e)), ca = At(_across, Next(Next(e))),
-                  ad = At(_across, Next(other)), db = At(_across, Next(Next(other)));
-        Set(f, {c, a, d});
-        Set(g, {d, b, c});
-        Meet(f, ca);
-        Meet(f + 1, ad);
-        Meet(f + 2, g + 2);
-        Meet(g, db);
-        Meet(g + 1, bc);
-        --At(_valence, a);
-        --At(_valence, b);
-        ++At(_valence, c);
-        ++At(_valence, d);
-    }
-
-private:
-    template <class T>
-    static T& At(std::vector<T>& values, int i) {
-        return values[static_cast<size_t>(i)];
-    }
-    static int Next(int e) { return e % 3 == 2 ? e - 2 : e + 1; }
-
-    void Set(int first, std::array<Index, 3> const& corners) {
-        std::copy(corners.begin(), corners.end(), _v.begin() + first);
-    }
-    void Meet(int e, int other) {
-        At(_across, e) = other;
-        At(_across, other) = e;
-    }
-    /// Whether the vertex that edge `start` leaves has `d` as a neighbour.
-    bool AreJoined(int start, Index d) {
-        int e = start;
-        do {
-            if (At(_v, Next(e)) == d) return true;
-            e = Next(At(_across, e));
-        } while (e != start);
-        return false;
-    }
-
-    std::vector<Index>& _v;
-    std::vector<int> _across, _valence;
-};
-
-}  // namespace
 
 engine::Scene MakeIrregularTriangles(int n, int m, unsigned seed) {
     engine::Scene scene = MakeTriangleTorus(n, m);

@@ -15,6 +15,7 @@
 #include "support/fit_meshes.h"
 #include "support/listener.h"
 #include "support/meshes.h"
+#include "support/scan_meshes.h"
 #include "support/values.h"
 
 namespace limn {
@@ -66,6 +67,16 @@ TEST(Fit, TheLimitPassesThroughTheVertices) {
         EXPECT_LE(result.certificate.rms, result.certificate.max);
         EXPECT_EQ(result.mesh.cage.faceVertices, scene.cage.faceVertices);
     }
+}
+
+// A sample of the vertices bears witness for all.
+TEST(Fit, TheCertificateOfAMeshOfManyVerticesIsThatOfAll) {
+    engine::Scene const scan = test::MakeScan(70);
+    auto const result = FitToLimit(scan, {});
+    ASSERT_TRUE(result.HasConverged());
+    double const miss = FindMiss(result.mesh, scan.positions);  // of one coordinate
+    EXPECT_GE(result.certificate.max, miss - 1e-8);             // known to a hundredth of 1e-6
+    EXPECT_LE(result.certificate.max, std::sqrt(3.0) * miss + 1e-8);
 }
 
 // Of an odd prism A is regular, but only just; what alternates round it is multiplied.

@@ -80,7 +80,7 @@ TEST(RingSubdivision, ChildrenAreTheRefinedFacesOfTheWholeMesh) {
             auto const& weights = step.children[c].weights;
             auto const vertices = fine.GetFaceVertices(childFaces[c]);
             for (int corner = 0; corner < vertices.size(); ++corner) {
-                int const row = step.children[c].ring.faceVertices[corner];
+                int const row = step.children[c].ring.GetFaceVertices()[corner];
                 double x = 0.0;
                 for (int k = weights.offsets[row]; k < weights.offsets[row + 1]; ++k) {
                     x += weights.weights[k] *
