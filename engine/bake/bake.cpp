@@ -29,8 +29,16 @@ void CheckPattern(std::string const& pattern, BakeOptions const& options) {
                             pattern));
 }
 
-BakeReport BakeTo(BakeDestination& destination, std::string const& pattern, Model const& model,
+void CheckSide(char const* name, int texels) {
+    if (texels >= 1 && texels <= kMaxImageSide) return;
+    throw Error(ErrorCode::BadOption, fmt::format("`{}` is {}; 1 to {} texels are possible", name,
+                                                  texels, kMaxImageSide));
+}
+
+BakeReport BakeAs(std::string const& pattern, BakeDestination& destination, Model const& model,
                   BakeOptions const& options, Job& job) {
+    CheckSide("width", options.width);
+    CheckSide("height", options.height);
     RequireLimit(model);
     CheckPattern(pattern, options);
     job.Start("preparing maps");
@@ -78,14 +86,19 @@ BakeReport BakeTo(BakeDestination& destination, std::string const& pattern, Mode
 BakeReport Bake(Model const& model, BakeOptions const& options, Job& job) {
     RequireExrEnding(options.pattern);
     ExrDestination destination(model, options, job);
-    return BakeTo(destination, options.pattern, model, options, job);
+    return BakeAs(options.pattern, destination, model, options, job);
+}
+
+BakeReport BakeTo(BakeDestination& destination, Model const& model, BakeOptions const& options,
+                  Job& job) {
+    return BakeAs(options.pattern.empty() ? "{map}.<UDIM>" : options.pattern, destination, model,
+                  options, job);
 }
 
 BakedImages BakeToMemory(Model const& model, BakeOptions const& options, Job& job) {
     MemoryDestination destination;
     BakedImages baked;
-    std::string const pattern = options.pattern.empty() ? "{map}.<UDIM>" : options.pattern;
-    baked.report = BakeTo(destination, pattern, model, options, job);
+    baked.report = BakeTo(destination, model, options, job);
     baked.images = destination.TakeImages();
     return baked;
 }

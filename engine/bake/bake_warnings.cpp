@@ -123,8 +123,12 @@ void WarnBeforeBake(Model const& model, BakeOptions const& options,
 void WarnAfterBake(Model const& model, BakeOptions const& options, BakeReport const& report,
                    std::vector<std::string> movedPlaces, Job& job) {
     if (report.outputs.empty()) {
-        job.Warn(fmt::format("{}: no texel is covered by {} in the tiles asked for",
-                             model.GetPath(), fmt::join(options.groups, ", ")));
+        std::string const faces = options.groups.empty()
+                                      ? "any face"
+                                      : fmt::format("{}", fmt::join(options.groups, ", "));
+        job.Warn(fmt::format(
+            "{}: no texel is covered by {}{}", model.GetPath(), faces,
+            options.tiles.empty() && options.groups.empty() ? "" : " in the tiles asked for"));
         return;
     }
     WarnOfOverlaps(model, report, job);

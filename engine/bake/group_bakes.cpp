@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "engine/bake/bake_warnings.h"
+#include "engine/bake/output_names.h"
 #include "far_ext/error.h"
 
 namespace limn::engine {
@@ -38,12 +39,14 @@ std::vector<BakeOptions> SplitByGroup(Model const& model, BakeOptions const& opt
     model.SelectGroups(options.groups);  // refuses those that there are not
     WarnOfLostFaces(model, job);
     std::vector<BakeOptions> bakes;
+    OutputNames names;
     auto const groups = options.groups.empty() ? ListGroupsOfOneKind(model, job) : options.groups;
     for (std::string const& group : groups) {
         BakeOptions& own = bakes.emplace_back(options);
         own.groups = {group};
         own.group = group;
         own.mayBeEmpty = true;
+        if (HasGroupToken(own.pattern)) names.Add(own, model.GetName(), model.GetPath());
     }
     return bakes;
 }

@@ -14,7 +14,8 @@ namespace limn::engine {
 /// warning of faces that are in none, and of those without texture coordinates. A group without a
 /// texel is a warning, too, and no error.
 ///
-/// \throws Error  BadOption: a group that there is not, or a mesh without groups
+/// \throws Error  BadOption: a group that there is not, a mesh without groups, or two groups whose
+///                outputs would have one name, as `b/c` and `b_c` have
 std::vector<BakeOptions> SplitByGroup(Model const& model, BakeOptions const& options, Job& job);
 
 }  // namespace limn::engine

@@ -8,15 +8,7 @@ namespace limn::engine {
 
 std::shared_ptr<Strip> StripPool::Acquire(int index, int numPlanes, TileGrid const& grid,
                                           bool countsFaces) {
-    std::unique_ptr<Strip> strip;
-    {
-        std::lock_guard const lock(_mutex);
-        if (!_idle.empty()) {
-            strip = std::move(_idle.back());
-            _idle.pop_back();
-        }
-    }
-    if (!strip) strip = std::make_unique<Strip>();
+    std::unique_ptr<Strip> strip = Take();
     strip->index = index;
     strip->numPlanes = numPlanes;
     strip->texels.countsFaces = countsFaces;
@@ -30,11 +22,23 @@ std::shared_ptr<Strip> StripPool::Acquire(int index, int numPlanes, TileGrid con
     strip->high.assign(count, -std::numeric_limits<float>::infinity());
     strip->numCovered = 0;
     strip->leftOut.clear();
-    return {strip.release(), [this](Strip* done) {
-                std::unique_ptr<Strip> owned(done);
-                std::lock_guard const lock(_mutex);
-                _idle.push_back(std::move(owned));
-            }};
+    return {strip.release(), [this](Strip* done) { Return(std::unique_ptr<Strip>(done)); }};
+}
+
+std::unique_ptr<Strip> StripPool::Take() {
+    std::lock_guard const lock(_mutex);
+    if (_idle.empty()) {
+        _idle.reserve(++_numStrips);  // now, for a strip may come back where memory is short
+        return std::make_unique<Strip>();
+    }
+    std::unique_ptr<Strip> strip = std::move(_idle.back());
+    _idle.pop_back();
+    return strip;
+}
+
+void StripPool::Return(std::unique_ptr<Strip> strip) noexcept {
+    std::lock_guard const lock(_mutex);
+    _idle.push_back(std::move(strip));
 }
 
 }  // namespace limn::engine

@@ -49,8 +49,12 @@ public:
                                    bool countsFaces);
 
 private:
+    std::unique_ptr<Strip> Take();
+    void Return(std::unique_ptr<Strip> strip) noexcept;
+
     std::mutex _mutex;
-    std::vector<std::unique_ptr<Strip>> _idle;
+    size_t _numStrips = 0;
+    std::vector<std::unique_ptr<Strip>> _idle;  // with room for all strips
 };
 
 /// How many strips a tile has.

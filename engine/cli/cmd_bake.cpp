@@ -148,7 +148,7 @@ engine::BakeOptions MakeOptions(BakeArguments const& a, CommonOptions const& com
     options.isHalf = !a.half.empty();
     options.halfMaps = ParseHalfMaps(a.half, options.maps);
     ChooseBands(a.bands, options);
-    auto const [width, height] = ParseTexelSize("--size", a.size, {1, 65536});
+    auto const [width, height] = ParseTexelSize("--size", a.size, {1, engine::kMaxImageSide});
     options.width = width;
     options.height = height;
     options.tiles = ParseTiles(a.tiles);

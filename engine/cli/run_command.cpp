@@ -55,14 +55,6 @@ int ToExitStatus(ErrorCode code) {
     return kInternal;
 }
 
-/// An error is one line.
-std::string AsLine(std::string message) {
-    for (char& c : message) {
-        if (c == '\n' || c == '\r') c = ' ';
-    }
-    return message;
-}
-
 /// Calls work() on so many threads. The arena alone sees to it up to the number of cores; the
 /// process' limit is lifted only for more.
 template <class Work>
@@ -85,17 +77,17 @@ RunEnd Attempt(Work const& work, std::function<int()> const& getStopStatus) {
     } catch (engine::Stopped const&) {
         return {getStopStatus(), kInterrupted};
     } catch (Error const& error) {
-        return {ToExitStatus(error.GetCode()), AsLine(NameFlags(error.what()))};
+        return {ToExitStatus(error.GetCode()), NameFlags(error.what())};
     } catch (std::bad_alloc const&) {
         return {kInternal, "out of memory"};
     } catch (std::exception const& error) {
-        return {kInternal, AsLine(fmt::format("internal: {}", error.what()))};
+        return {kInternal, MakeOneLine(fmt::format("internal: {}", error.what()))};
     }
 }
 
 RunEnd ConcludeRun(int status, Context const& context) {
     if (status == kDone) return {};
-    return {status, AsLine(context.GetMiss())};
+    return {status, MakeOneLine(context.GetMiss())};
 }
 
 }  // namespace

@@ -16,8 +16,9 @@
 namespace limn::engine {
 
 MeshExtent MeasureExtent(Model const& model, std::span<double const> positions) {
-    MeshExtent extent{FindExtent(positions), {}};
     auto const& level = model.GetLevel();
+    far_ext::CheckPoints(positions, level.GetNumVertices());
+    MeshExtent extent{FindExtent(positions), {}};
     for (Index edge = 0; edge < level.GetNumEdges(); ++edge) {
         if (level.IsEdgeBoundary(edge) || level.IsEdgeNonManifold(edge)) return extent;
     }

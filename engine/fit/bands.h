@@ -19,6 +19,7 @@ struct MeshExtent : Extent {
 };
 
 /// \param positions  3 per vertex, the model's or others
+/// \throws Error     BadOption: there are too few
 MeshExtent MeasureExtent(Model const& model, std::span<double const> positions);
 
 /// Frequency bands of a mesh's positions, 3 numbers per vertex each; all add up to the positions.

@@ -58,6 +58,13 @@ int ExrSpec::GetLevelHeight(int level) const {
     return std::max(1, height >> level);
 }
 
+int ExrSpec::GetNumColumns(int level) const {
+    return (GetLevelWidth(level) - 1) / kTileSize + 1;
+}
+int ExrSpec::GetNumRows(int level) const {
+    return (GetLevelHeight(level) - 1) / kTileSize + 1;
+}
+
 struct ExrWriter::Backend {
     virtual ~Backend() = default;
     virtual void Write(ExrTile const& tile) = 0;
@@ -301,11 +308,35 @@ struct ExrWriter::LibraryBackend : ExrWriter::Backend {
     bool TakesFinishedChunks() const override { return false; }
 };
 
+namespace {
+
+void CheckSpec(std::string const& path, ExrSpec const& spec) {
+    if (spec.width < 1 || spec.height < 1) {
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("'{}': an image of {} x {} texels; at least 1 x 1 is needed", path,
+                                spec.width, spec.height));
+    }
+    if (spec.isHalf.empty() || spec.isHalf.size() == spec.channels.size()) return;
+    throw Error(ErrorCode::BadOption,
+                fmt::format("'{}': `isHalf` has {} values; {} are needed, one per channel", path,
+                            spec.isHalf.size(), spec.channels.size()));
+}
+
+size_t CountTiles(ExrSpec const& spec) {
+    size_t count = 0;
+    for (int level = 0; level < spec.GetNumLevels(); ++level)
+        count += static_cast<size_t>(spec.GetNumColumns(level)) *
+                 static_cast<size_t>(spec.GetNumRows(level));
+    return count;
+}
+
+}  // namespace
+
 ExrWriter::ExrWriter(std::string const& path, ExrSpec const& spec)
-    : _path(path),
-      _spec(spec),
-      _sortedChannels(spec.channels.size()),
-      _file(std::make_unique<AtomicFile>(RequireSeeking(path))) {
+    : _path(path), _spec(spec), _sortedChannels(spec.channels.size()) {
+    CheckSpec(path, spec);
+    _numTilesToCome = CountTiles(spec);
+    _file = std::make_unique<AtomicFile>(RequireSeeking(path));
     std::iota(_sortedChannels.begin(), _sortedChannels.end(), 0);
     std::sort(_sortedChannels.begin(), _sortedChannels.end(),
               [&](int a, int b) { return spec.channels[a] < spec.channels[b]; });
@@ -323,10 +354,23 @@ ExrWriter::ExrWriter(std::string const& path, ExrSpec const& spec)
 
 ExrWriter::~ExrWriter() = default;
 
-ExrTile ExrWriter::Pack(int level, int x, int y, float const* const* planes, size_t stride) const {
+ExrWriter::Size ExrWriter::FindTileSize(int level, int x, int y) const {
+    bool const isThere = level >= 0 && level < _spec.GetNumLevels() && x >= 0 && y >= 0 &&
+                         x < _spec.GetNumColumns(level) && y < _spec.GetNumRows(level);
+    if (!isThere) {
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("'{}': there is no tile {} {} of level {}; level 0 has {} x {}, "
+                                "and levels are 0 to {}",
+                                _path, x, y, level, _spec.GetNumColumns(0), _spec.GetNumRows(0),
+                                _spec.GetNumLevels() - 1));
+    }
     int const T = ExrSpec::kTileSize;
-    int const width = std::min(T, _spec.GetLevelWidth(level) - x * T);
-    int const height = std::min(T, _spec.GetLevelHeight(level) - y * T);
+    return {std::min(T, _spec.GetLevelWidth(level) - x * T),
+            std::min(T, _spec.GetLevelHeight(level) - y * T)};
+}
+
+ExrTile ExrWriter::Pack(int level, int x, int y, float const* const* planes, size_t stride) const {
+    auto const [width, height] = FindTileSize(level, x, y);
     size_t const w = static_cast<size_t>(width), h = static_cast<size_t>(height);
     size_t const wordsPerRow = _spec.GetWordsPerTexel() * w;
 
@@ -361,10 +405,9 @@ ExrTile ExrWriter::Pack(int level, int x, int y, float const* const* planes, siz
 
 ExrTile ExrWriter::PackEmpty(int level, int x, int y) const {
     int const T = ExrSpec::kTileSize;
-    std::pair const size(std::min(T, _spec.GetLevelWidth(level) - x * T),
-                         std::min(T, _spec.GetLevelHeight(level) - y * T));
+    auto const [width, height] = FindTileSize(level, x, y);
     std::lock_guard const lock(_emptyMutex);
-    auto& bytes = _emptyTiles[size];
+    auto& bytes = _emptyTiles[{width, height}];
     if (bytes.empty()) {
         std::vector<float> const zeros(static_cast<size_t>(T * T), 0.0f);
         std::vector<float const*> const planes(_spec.channels.size(), zeros.data());
@@ -375,10 +418,17 @@ ExrTile ExrWriter::PackEmpty(int level, int x, int y) const {
 
 void ExrWriter::Write(ExrTile const& tile) {
     _backend->Write(tile);
+    --_numTilesToCome;
 }
 
 std::unique_ptr<AtomicFile> ExrWriter::Seal(ValueRange const& range,
                                             std::function<void()> const& check) {
+    if (_numTilesToCome != 0) {
+        throw Error(ErrorCode::BadOption,
+                    fmt::format("'{}' lacks {} of its {} tiles; all are written before it is "
+                                "sealed",
+                                _path, _numTilesToCome, CountTiles(_spec)));
+    }
     _backend->Finish();
     if (_file->IsTemporary()) SealExr(_file->GetPathToWrite(), range, check);
     return std::move(_file);

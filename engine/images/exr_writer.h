@@ -32,6 +32,8 @@ struct ExrSpec {
     int GetNumLevels() const;  ///< 1 without mips; ROUND_DOWN otherwise
     int GetLevelWidth(int level) const;
     int GetLevelHeight(int level) const;
+    int GetNumColumns(int level) const;  ///< of tiles
+    int GetNumRows(int level) const;
 };
 
 /// The bytes of one finished tile.
@@ -49,7 +51,8 @@ struct ExrTile {
 /// other kinds go through OpenEXR's own compressors when they are written.
 class ExrWriter {
 public:
-    /// \throws Error  Io.  BadOption: the path leads to what cannot seek, /dev/null aside
+    /// \throws Error  Io.  BadOption: the path leads to what cannot seek, /dev/null aside; an image
+    ///                without texels; kinds of other channels than there are
     ExrWriter(std::string const& path, ExrSpec const& spec);
     ~ExrWriter();
 
@@ -57,19 +60,20 @@ public:
     ///
     /// \param planes  one per channel of the spec, the tile's first texel; rows `stride` floats
     ///                apart
+    /// \throws Error  BadOption: a tile that there is not
     ExrTile Pack(int level, int x, int y, float const* const* planes, size_t stride) const;
 
-    /// A tile of zeros; those of one size are compressed once.
+    /// A tile of zeros; those of one size are compressed once. As Pack
     ExrTile PackEmpty(int level, int x, int y) const;
 
     /// \throws Error  Io: a full disk, ...
     void Write(ExrTile const& tile);
 
-    /// Writes the file's index and seals it. Called once, as the last.
+    /// Writes the file's index and seals it. Called once, as the last, with all tiles there.
     ///
     /// \param check  called now and then; what it throws ends the work
     /// \return       the complete file, to be committed by the caller
-    /// \throws Error  Io
+    /// \throws Error  Io.  BadOption: tiles are missing
     std::unique_ptr<AtomicFile> Seal(ValueRange const& range,
                                      std::function<void()> const& check = {});
 
@@ -78,8 +82,15 @@ private:
     struct CoreBackend;
     struct LibraryBackend;
 
+    /// Of a tile, in texels.
+    struct Size {
+        int width = 0, height = 0;
+    };
+    Size FindTileSize(int level, int x, int y) const;
+
     std::string _path;
     ExrSpec _spec;
+    size_t _numTilesToCome = 0;
     std::vector<int> _sortedChannels;  // EXR keeps channels sorted by name
     std::unique_ptr<AtomicFile> _file;
     std::unique_ptr<Backend> _backend;

@@ -148,17 +148,19 @@ void RemoveMadeFolders(fs::path folder) {
     }
 }
 
+/// \return false, with errno, where it cannot be made
+bool MakeFolder(fs::path const& folder) {
+    if (::mkdir(folder.c_str(), 0777) != 0) return errno == EEXIST;
+    GetMadeFolders().insert(folder);
+    return true;
+}
+
 /// \return false, with errno, where one cannot be made
 bool MakeFolders(fs::path const& folder) {
     std::error_code ignored;
-    if (fs::is_directory(folder, ignored)) return true;
-    if (::mkdir(folder.c_str(), 0777) == 0) {
-        GetMadeFolders().insert(folder);
-        return true;
-    }
-    if (errno == ENOENT && FolderOf(folder) != folder)
-        return MakeFolders(FolderOf(folder)) && MakeFolders(folder);
-    return errno == EEXIST;
+    if (fs::is_directory(folder, ignored) || MakeFolder(folder)) return true;
+    return errno == ENOENT && FolderOf(folder) != folder && MakeFolders(FolderOf(folder)) &&
+           MakeFolder(folder);
 }
 
 }  // namespace
@@ -173,6 +175,10 @@ OutputKind FindOutputKind(std::string const& path) {
 
 AtomicFile::AtomicFile(std::string const& path, PipeReader reader)
     : _path(path), _pathToWrite(path) {
+    if (path.find('\0') != path.npos) {  // where the system would end the name
+        throw Error(ErrorCode::Io,
+                    fmt::format("'{}' cannot be written: a name holds no zero byte", path));
+    }
     if (auto const file = FindFile(path)) {
         _target = file->string();
         OpenTemporary();
@@ -194,10 +200,12 @@ void AtomicFile::OpenTemporary() {
     std::lock_guard const lock(GetMutex());
     fs::path const folder = FolderOf(_target);
     _pathToWrite = MakeTemporaryPath(_target).string();
-    // Again where another process, that made the folder, too, has just removed it.
-    for (int attempt = 0; attempt < 3 && !_file.IsOpen() && MakeFolders(folder); ++attempt) {
-        _file =
-            Descriptor(::open(_pathToWrite.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    // Again where another process, that made a folder, too, has just removed it.
+    for (int attempt = 0; attempt < 3 && !_file.IsOpen(); ++attempt) {
+        if (MakeFolders(folder)) {
+            _file = Descriptor(
+                ::open(_pathToWrite.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+        }
         if (!_file.IsOpen() && errno != ENOENT) break;
     }
     if (!_file.IsOpen()) {

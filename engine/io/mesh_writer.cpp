@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "engine/io/file.h"
+#include "engine/scene/scene_checks.h"
 #include "far_ext/error.h"
 #include "far_ext/rows/points.h"
 
@@ -200,6 +201,13 @@ public:
     }
 
 private:
+    static std::string NameChannel(Primvar const& primvar, int channel) {
+        static char const* const kColours[] = {"red", "green", "blue", "alpha"};
+        if (primvar.numChannels == 1) return primvar.name;
+        return primvar.numChannels <= 4 ? kColours[channel]
+                                        : fmt::format("{}_{}", primvar.name, channel);
+    }
+
     void AppendHeader() {
         char const* const real = _isDouble ? "double" : "float";
         auto const line = [&]<class... T>(fmt::format_string<T...> format, T&&... arguments) {
@@ -208,11 +216,8 @@ private:
         line("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", _scene.cage.numVertices);
         for (char const* axis : {"x", "y", "z"}) line("property {} {}\n", real, axis);
         for (Primvar const& primvar : _scene.primvars) {
-            static char const* const kColours[] = {"red", "green", "blue", "alpha"};
-            for (int c = 0; c < primvar.numChannels; ++c) {
-                line("property float {}\n",
-                     primvar.numChannels == 1 ? primvar.name.c_str() : kColours[c]);
-            }
+            for (int c = 0; c < primvar.numChannels; ++c)
+                line("property float {}\n", NameChannel(primvar, c));
         }
         line("element face {}\nproperty list int int vertex_indices\n", _scene.cage.GetNumFaces());
         if (_scene.HasUVs()) line("property list int {} texcoord\n", real);
@@ -233,6 +238,24 @@ private:
     std::string _bytes;
 };
 
+/// \param length  values per element
+void RequireFloats(char const* what, std::vector<double> const& values, size_t length) {
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    auto const bad = std::ranges::find_if(values, [](double v) { return std::abs(v) > kLargest; });
+    if (bad == values.end()) return;
+    throw Error(ErrorCode::BadMesh,
+                fmt::format("{} {} is {:g}, and a float at most {:g}; use `precision` double", what,
+                            static_cast<size_t>(bad - values.begin()) / length, *bad, kLargest));
+}
+
+/// Refuses what no file can say.
+void CheckWritable(Scene const& scene, Precision precision) {
+    CheckScene(scene);
+    if (precision == Precision::Double) return;
+    RequireFloats("position of vertex", scene.positions, 3);
+    RequireFloats("texture coordinate", scene.uvs, 2);
+}
+
 }  // namespace
 
 void RequireMeshEnding(std::string const& path) {
@@ -244,16 +267,7 @@ void RequireMeshEnding(std::string const& path) {
 
 MeshBytes FormatMesh(std::string const& path, Scene const& scene, Precision precision) {
     RequireMeshEnding(path);
-    bool const isDouble = precision == Precision::Double;
-    double const largest =
-        isDouble ? std::numeric_limits<double>::max() : std::numeric_limits<float>::max();
-    auto const isWritable = [&](double value) { return std::abs(value) <= largest; };
-    if (!std::all_of(scene.positions.begin(), scene.positions.end(), isWritable) ||
-        !std::all_of(scene.uvs.begin(), scene.uvs.end(), isWritable)) {
-        throw Error(ErrorCode::BadMesh,
-                    fmt::format("'{}': a coordinate is no number or does not fit a {}", path,
-                                isDouble ? "double" : "float; use `precision` double"));
-    }
+    NamingMesh(fmt::format("'{}'", path), [&] { CheckWritable(scene, precision); });
     MeshBytes file;
     if (GetEnding(path) == ".obj") {
         if (scene.primvars.size() > (FindObjColours(scene) ? 1 : 0))

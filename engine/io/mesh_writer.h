@@ -23,8 +23,10 @@ struct MeshBytes {
 /// and primvars, without tags or groups) by its path's ending in small or capital letters. Numbers
 /// read back as the same float or double.
 ///
-/// \throws Error    BadOption: another ending.  BadMesh: a coordinate that is no number or beyond
-///                  the range of the precision
+/// \throws Error    BadOption: another ending.  BadMesh: a scene whose parts do not belong
+/// together,
+///                  as Model::Build refuses it; a coordinate that is no number or beyond the range
+///                  of the precision
 MeshBytes FormatMesh(std::string const& path, Scene const& scene, Precision precision);
 
 /// Writes a mesh, complete or not at all.

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "engine/io/unheld_number.h"
+#include "engine/scene/scene_checks.h"
 #include "far_ext/error.h"
 
 namespace limn::engine {
@@ -93,8 +94,7 @@ public:
         return parsed.value;
     }
 
-    /// Numbers beyond this would pass the range of float somewhere between a file and its maps.
-    static constexpr double kLargest = 1e30;
+    static constexpr double kLargest = kLargestNumber;
 
     [[noreturn]] void Refuse(std::string const& message) const { RefuseAt(_lineNumber, message); }
     [[noreturn]] void RefuseAt(uint32_t line, std::string const& message) const {

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "far_ext/error.h"
+
 namespace limn::engine {
 
 namespace {
@@ -52,7 +54,8 @@ void Job::Note(std::string const& message) {
     if (_host.onNote) _host.onNote(message);
 }
 
-void Job::Warn(std::string const& message) {
+void Job::Warn(std::string const& text) {
+    std::string const message = MakeOneLine(text);
     std::lock_guard const hearing(_hostMutex);  // first, so that it hears in the report's order
     {
         std::lock_guard const lock(_warningsMutex);

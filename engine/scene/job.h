@@ -24,10 +24,12 @@ struct Progress {
 /// of the work has something to tell, one call at a time; it must not call the job. What a callback
 /// throws ends the work and comes unchanged out of the function that was given the job.
 struct JobHost {
-    /// The start (done == 0) and the end of each phase, and at most 20 times a second between.
+    /// Of each phase whose steps are counted the start (done == 0) and the end, and at most 20
+    /// times a second between.
     std::function<void(Progress const&)> onProgress{};
     std::function<void(std::string const&)> onWarning{};
-    /// Each phase as it starts, e.g. "factorising"; the one before has ended then.
+    /// Each phase as it starts, with counted steps or without, e.g. "factorising"; the one before
+    /// has ended then.
     std::function<void(std::string const&)> onPhase{};
     /// What only those want to know who watch closely: tiles, files.
     std::function<void(std::string const&)> onNote{};
@@ -36,7 +38,8 @@ struct JobHost {
 };
 
 /// One piece of work and its host: progress, warnings, and the wish to stop. Nothing is shared
-/// between jobs. One without a host is silent and never stops. Safe to use from many threads.
+/// between jobs. One without a host is silent and never stops. Safe to use from many threads. Of
+/// one that is used for one call after the other, warnings add up.
 class Job {
 public:
     Job() = default;
@@ -51,8 +54,8 @@ public:
 
     void Note(std::string const& message);
 
-    /// Told to the host at once and kept for the report.
-    void Warn(std::string const& message);
+    /// Told to the host at once and kept for the report, as one line.
+    void Warn(std::string const& text);
     std::vector<std::string> GetWarnings() const;
 
     /// \throws Stopped  once the host has asked for it

@@ -14,9 +14,10 @@
 namespace limn::engine {
 
 Model Model::Build(Scene scene) {
-    if (scene.path.empty()) scene.path = scene.name;
+    if (scene.path.empty()) scene.path = scene.name.empty() ? kNameless : scene.name;
     auto refiner = NamingMesh(scene.path, [&] {
         CheckScene(scene);
+        CheckMagnitudes(scene);
         return far_ext::CreateRefiner(scene.cage);
     });
     std::shared_ptr<Points const> points(
@@ -27,7 +28,10 @@ Model Model::Build(Scene scene) {
 }
 
 Model Model::WithPoints(std::vector<double> positions, std::string sha256) const {
-    NamingMesh(GetPath(), [&] { CheckPositions(GetCage(), positions); });
+    NamingMesh(GetPath(), [&] {
+        CheckPositions(GetCage(), positions);
+        CheckMagnitudes(positions);
+    });
     return {_parts,
             std::shared_ptr<Points const>(new Points{std::move(positions), std::move(sha256)})};
 }

@@ -22,15 +22,19 @@ namespace limn::engine {
 
 /// A mesh as functions take it: a scene that has been checked, with its topology built. Parts that
 /// belong together cannot come apart, and none of it ever changes: copies share it all, and threads
-/// may read it at once.
+/// may read it at once. What is moved from is copied, for that costs no more, and stays whole.
 class Model {
 public:
+    Model(Model const&) = default;
+    Model& operator=(Model const&) = default;
+
     /// Checks a scene and builds its topology. One from arrays fills `cage` and `positions`, and
     /// what else it has; without a path it goes by its name.
     ///
-    /// \throws Error  what far_ext::Validate and far_ext::CreateRefiner refuse; BadMesh: values,
-    ///                UVs, primvars or groups of another count than vertices, corners or faces ask
-    ///                for, or positions or UVs that are not finite. Messages begin with "PATH: "
+    /// \throws Error  what far_ext::Validate and far_ext::CreateRefiner refuse; BadMesh: arrays of
+    ///                another length than vertices, corners or faces ask for, or positions or UVs
+    ///                that are not finite or beyond 1e30, as readers refuse them. Messages begin
+    ///                with "PATH: ", or "mesh: " without a path or name
     static Model Build(Scene scene);
 
     /// The same mesh with other positions: topology, refiner, UVs and all the rest are shared.

@@ -28,6 +28,18 @@ void CheckFinite(std::string const& what, std::vector<double> const& values, siz
                             static_cast<size_t>(bad - values.begin()) / length, *bad));
 }
 
+/// \param length  values per element
+template <class T>
+void CheckMagnitude(std::string const& what, std::span<T const> values, size_t length) {
+    auto const bad = std::find_if_not(values.begin(), values.end(),
+                                      [](T v) { return std::abs(v) <= kLargestNumber; });
+    if (bad == values.end()) return;
+    throw Error(
+        ErrorCode::BadMesh,
+        fmt::format("{} {} is {:g}; at most {:g} in magnitude is possible", what,
+                    static_cast<size_t>(bad - values.begin()) / length, *bad, kLargestNumber));
+}
+
 void CheckUVs(Scene const& scene) {
     if (!scene.HasUVs()) return;
     auto const& channels = scene.cage.fvarChannels;
@@ -75,11 +87,32 @@ void CheckPositions(far_ext::ControlMesh const& cage, std::vector<double> const&
 }
 
 void CheckScene(Scene const& scene) {
-    far_ext::Validate(scene.cage);
-    CheckPositions(scene.cage, scene.positions);
+    auto const& cage = scene.cage;
+    size_t const numCoordinates = 3 * static_cast<size_t>(std::max(0, cage.numVertices));
+    // First, for what comes then takes memory by the number of vertices.
+    if (numCoordinates > 0) CheckCount("positions", scene.positions.size(), numCoordinates);
+    far_ext::Validate(cage);
+    CheckPositions(cage, scene.positions);
+    if (!scene.normals.empty()) CheckCount("normals", scene.normals.size(), numCoordinates);
+    CheckFinite("normal of vertex", scene.normals, 3);
     CheckUVs(scene);
     CheckPrimvars(scene);
     CheckGroups(scene);
+    if (!scene.faceLines.empty())
+        CheckCount("lines of faces", scene.faceLines.size(), cage.faceSizes.size());
+}
+
+void CheckMagnitudes(Scene const& scene) {
+    CheckMagnitudes(scene.positions);
+    CheckMagnitude<double>("texture coordinate", scene.uvs, 2);
+    for (Primvar const& primvar : scene.primvars) {
+        CheckMagnitude<float>(fmt::format("primvar '{}' of vertex", primvar.name), primvar.values,
+                              static_cast<size_t>(primvar.numChannels));
+    }
+}
+
+void CheckMagnitudes(std::span<double const> positions) {
+    CheckMagnitude<double>("position of vertex", positions, 3);
 }
 
 }  // namespace limn::engine

@@ -29,7 +29,7 @@ struct TextureTiles::Box {
     double GetSize() const { return std::max(maxU - minU, maxV - minV); }
 
     /// True where rounding is more than a tile, so that no texel finds its place.
-    bool IsLost() const { return rounding > 1.0; }
+    bool IsLost() const { return !(rounding <= 1.0); }  // or no number
 
     /// By the rounding of numbers as large as these.
     Box Widen() const {
@@ -61,13 +61,15 @@ TextureTiles::TextureTiles(eval::LimitSurface const& surface, std::span<double c
       _marginU(kNearly * 0.5 / width),
       _marginV(kNearly * 0.5 / height) {}
 
-/// The tiles of UDIM's range with samples in the box, perhaps.
+/// The tiles of UDIM's range with samples in the box, perhaps; none of a box without numbers.
 TextureTiles::Range TextureTiles::FindTiles(Box const& box) const {
+    // std::min and std::max answer with their first argument where the second is no number.
     auto const first = [](double low, double margin, int count) {
-        return static_cast<int>(std::clamp(std::ceil(low - 1.0 + margin), 0.0, 1.0 * count));
+        return static_cast<int>(
+            std::max(0.0, std::min(1.0 * count, std::ceil(low - 1.0 + margin))));
     };
     auto const last = [](double high, double margin, int count) {
-        return static_cast<int>(std::clamp(std::floor(high - margin), -1.0, count - 1.0));
+        return static_cast<int>(std::min(std::max(-1.0, std::floor(high - margin)), count - 1.0));
     };
     return {first(box.minU, _marginU, 10), last(box.maxU, _marginU, 10),
             first(box.minV, _marginV, kMaxUdimRows), last(box.maxV, _marginV, kMaxUdimRows)};

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "far_ext/topology/control_mesh.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 #include <opensubdiv/vtr/types.h>
 
@@ -73,9 +71,15 @@ void ValidateTags(ControlMesh const& mesh) {
     auto const isVertex = [&](Index v) { return v >= 0 && v < mesh.numVertices; };
     auto const isSharpness = [](float s) { return s >= 0.0f; };  // false for NaN too
 
-    if (mesh.creaseVertexPairs.size() != 2 * mesh.creaseSharpness.size() ||
-        mesh.cornerVertices.size() != mesh.cornerSharpness.size()) {
-        Refuse(ErrorCode::BadMesh, "creases and corners need one sharpness each");
+    if (mesh.creaseVertexPairs.size() != 2 * mesh.creaseSharpness.size()) {
+        Refuse(ErrorCode::BadMesh,
+               fmt::format("creases: {} vertices and {} sharpnesses; each needs two and one",
+                           mesh.creaseVertexPairs.size(), mesh.creaseSharpness.size()));
+    }
+    if (mesh.cornerVertices.size() != mesh.cornerSharpness.size()) {
+        Refuse(ErrorCode::BadMesh,
+               fmt::format("corners: {} vertices and {} sharpnesses; each needs one and one",
+                           mesh.cornerVertices.size(), mesh.cornerSharpness.size()));
     }
     for (size_t i = 0; i < mesh.creaseSharpness.size(); ++i) {
         Index const a = mesh.creaseVertexPairs[2 * i], b = mesh.creaseVertexPairs[2 * i + 1];
@@ -104,20 +108,58 @@ void ValidateTags(ControlMesh const& mesh) {
     }
 }
 
+void ValidateRules(ControlMesh const& mesh) {
+    struct Rule {
+        char const* name;
+        int value, last;
+    };
+    Sdc::Options const& options = mesh.options;
+    for (Rule const& rule :
+         {Rule{"scheme", static_cast<int>(mesh.scheme), Sdc::SCHEME_LOOP},
+          Rule{"boundary interpolation", options.GetVtxBoundaryInterpolation(),
+               Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER},
+          Rule{"face-varying interpolation", options.GetFVarLinearInterpolation(),
+               Sdc::Options::FVAR_LINEAR_ALL},
+          Rule{"creasing method", options.GetCreasingMethod(), Sdc::Options::CREASE_CHAIKIN},
+          Rule{"triangle subdivision", options.GetTriangleSubdivision(),
+               Sdc::Options::TRI_SUB_SMOOTH}}) {
+        if (rule.value >= 0 && rule.value <= rule.last) continue;
+        Refuse(ErrorCode::BadMesh, fmt::format("{} {} is none of OpenSubdiv's, which are 0 to {}",
+                                               rule.name, rule.value, rule.last));
+    }
+}
+
+void ValidateChannel(ControlMesh const& mesh, size_t number) {
+    FVarChannel const& channel = mesh.fvarChannels[number];
+    if (channel.valueIndices.size() != mesh.faceVertices.size()) {
+        Refuse(ErrorCode::BadMesh,
+               fmt::format("face-varying channel {}: {} indices; {} are needed, one per corner",
+                           number, channel.valueIndices.size(), mesh.faceVertices.size()));
+    }
+    size_t corner = 0;
+    for (Index face = 0; face < mesh.GetNumFaces(); ++face) {
+        for (size_t const end = corner + static_cast<size_t>(mesh.faceSizes[face]); corner < end;
+             ++corner) {
+            Index const value = channel.valueIndices[corner];
+            if (value >= 0 && value < channel.numValues) continue;
+            Refuse(ErrorCode::BadMesh,
+                   fmt::format("face-varying channel {}: face {} uses value {}; there are {} "
+                               "values",
+                               number, face, value, channel.numValues));
+        }
+    }
+}
+
 }  // namespace
 
 void Validate(ControlMesh const& mesh) {
     if (mesh.faceSizes.empty()) Refuse(ErrorCode::BadMesh, "the mesh has no faces");
     if (mesh.numVertices < 1) Refuse(ErrorCode::BadMesh, "the mesh has no vertices");
+    ValidateRules(mesh);
     ValidateFaces(mesh);
     ValidateTags(mesh);
-    for (FVarChannel const& channel : mesh.fvarChannels) {
-        auto const isValue = [&](Index v) { return v >= 0 && v < channel.numValues; };
-        if (channel.valueIndices.size() != mesh.faceVertices.size() ||
-            !std::all_of(channel.valueIndices.begin(), channel.valueIndices.end(), isValue)) {
-            Refuse(ErrorCode::BadMesh, "a face-varying channel does not name one value per corner");
-        }
-    }
+    for (size_t number = 0; number < mesh.fvarChannels.size(); ++number)
+        ValidateChannel(mesh, number);
 }
 
 }  // namespace limn::far_ext

@@ -42,7 +42,8 @@ diff page.txt printed.txt
 
 for file in share/man/man1/limn.1 share/bash-completion/completions/limn \
     share/fish/vendor_completions.d/limn.fish share/zsh/site-functions/_limn \
-    share/doc/limn/LICENSE share/doc/limn/docs/command-line.md; do
+    share/doc/limn/LICENSE share/doc/limn/docs/command-line.md \
+    share/doc/limn/examples/library/CMakeLists.txt; do
     test -s "prefix/$file"
 done
 limn completion bash | cmp - prefix/share/bash-completion/completions/limn
@@ -65,6 +66,10 @@ fit_mesh "$spot" out/fit.obj | grep -o '[0-9.]*e-[0-9]*' |
     holds 'the limit passes within the tolerance of the vertices' '$1 <= 1e-9'
 limn fit "$spot" -o out/by_limn.obj --tolerance 1e-9 --precision double --quiet
 cmp out/fit.obj out/by_limn.obj
+
+bake_to_sink "$spot" >sink.txt
+bake_to_files "$spot" 'out/{map}.<UDIM>.exr' | sed '/texels/d; s,out/,,; s/exr/raw/' | diff sink.txt -
+wc -c <normal.1001.raw | holds 'a sink is given every texel' '$1 == 3 * 4 * 256 * 256'
 
 host_job "$spot" 600 | sed -n 's/^baking spot: //p' >progress.txt
 sed -n '1p' progress.txt | holds 'progress begins with nothing' '$1 == 0'

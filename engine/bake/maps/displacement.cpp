@@ -86,7 +86,7 @@ private:
 std::unique_ptr<Map> MakeDisplacementMap(std::string const& name, MapOptions const& options,
                                          Model const&) {
     if (!options.against) {
-        throw Error(ErrorCode::BadOption, "`maps` displacement needs `against` MESH");
+        throw Error(ErrorCode::BadOption, "`maps` displacement needs `against`, a mesh");
     }
     MapTraits traits{.name = name, .channels = {"Y"}, .units = "length"};
     if (options.isVector) {

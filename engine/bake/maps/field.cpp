@@ -87,7 +87,7 @@ std::unique_ptr<Map> MakeFieldMap(std::string const& name, MapOptions const& opt
     if (!options.field) {
         throw Error(
             ErrorCode::BadOption,
-            "`maps` field needs `field`: a value per edge, from a file of lines v0,v1,value");
+            "`maps` field needs `field`: a value per edge; in a file, a line v0,v1,value for each");
     }
     if (options.space == VectorSpace::Tangent) {
         throw Error(ErrorCode::BadOption,

@@ -159,7 +159,7 @@ private:
 
 std::unique_ptr<Map> MakeTensionMap(std::string const& name, MapOptions const& options,
                                     Model const&) {
-    if (!options.rest) throw Error(ErrorCode::BadOption, "`maps` tension needs `rest` MESH");
+    if (!options.rest) throw Error(ErrorCode::BadOption, "`maps` tension needs `rest`, a mesh");
     MapTraits traits{.name = name, .channels = {"s1", "s2", "R", "G", "B"}};
     traits.units = "ratio, direction unit vector";
     traits.range = RangeKind::Positive;

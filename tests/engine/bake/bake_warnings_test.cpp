@@ -59,6 +59,17 @@ TEST(BakeWarnings, NothingIsSaidOfASoundMesh) {
 
 // -------- faces that are lost
 
+TEST(BakeWarnings, ABakeThatMayBeEmptySaysThatItIs) {
+    Scene scene = test::MakeTorus(6, 4);
+    std::ranges::fill(scene.uvs, 0.5);
+    auto options = MakeMapOptions({"mean"});
+    options.mayBeEmpty = true;
+    EXPECT_EQ(WarningsOf(scene, options).back(), "made: no texel is covered by any face");
+    options.tiles = {1002};
+    EXPECT_EQ(WarningsOf(scene, options).back(),
+              "made: no texel is covered by any face in the tiles asked for");
+}
+
 TEST(BakeWarnings, FacesWithoutTextureAreaAreCountedAsInfoCountsThem) {
     Scene scene = test::MakeTorus(6, 4);
     EXPECT_EQ(WarningsOf(scene, MakeMapOptions({"position"})), Words{});

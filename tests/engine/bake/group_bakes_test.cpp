@@ -75,6 +75,16 @@ TEST(SplitByGroup, AMeshWithoutGroupsIsRefused) {
     EXPECT_EQ(test::CodeOf([&] { NamesOf(test::MakeTorus(6, 4), {}); }), ErrorCode::BadOption);
 }
 
+TEST(SplitByGroup, GroupsThatWouldHaveOneFileAreRefused) {
+    engine::Scene scene = test::MakeTorus(6, 4);
+    PutIntoGroups(scene, GroupKind::Material, {"b/c", "b_c"}, {1});
+    BakeOptions options;
+    options.maps = {"mean"};
+    options.pattern = "{group}.exr";
+    std::string const refusal = test::RefusalOf([&] { NamesOf(scene, options); });
+    EXPECT_TRUE(refusal.starts_with("`pattern`: two outputs are named 'b_c.exr'")) << refusal;
+}
+
 // Each group has a file with its own faces; one without texels is passed over with a warning.
 TEST(SplitByGroup, MakesBakesOfOneGroupEach) {
     test::TemporaryFolder const folder;

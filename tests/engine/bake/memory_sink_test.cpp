@@ -3,10 +3,12 @@
 
 #include <map>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "engine/bake/bake.h"
 #include "engine/images/exr_lookup.h"
+#include "support/errors.h"
 #include "support/files.h"
 #include "support/meshes.h"
 
@@ -60,6 +62,67 @@ TEST(BakeToMemory, HoldsWhatTheFilesHold) {
         }
     }
     EXPECT_GT(numPadded, 100u);
+}
+
+TEST(BakeToMemory, RefusesSidesThatNoImageHas) {
+    auto const model = engine::Model::Build(test::MakeTorus(6, 4));
+    engine::Job job;
+    for (int const side : {-1, 0, 65537, 2000000000}) {
+        auto options = MakeOptions();
+        options.height = side;
+        EXPECT_EQ(test::RefusalOf([&] { engine::BakeToMemory(model, options, job); }),
+                  fmt::format("`height` is {}; 1 to 65536 texels are possible", side));
+    }
+}
+
+/// Adds up all that it is given, padding included.
+class SumOfTexels : public engine::BakeDestination {
+public:
+    std::unique_ptr<engine::TexelSink> Open(engine::FileLayout const& file,
+                                            engine::BakeOutput& output) override {
+        output.path = "sum";
+        return std::make_unique<Sink>(file.numPlanes, sum);
+    }
+
+    double sum = 0.0;
+
+private:
+    class Sink : public engine::TexelSink {
+    public:
+        Sink(int numPlanes, double& sum) : _numPlanes(numPlanes), _sum(sum) {}
+        bool WantsCoverage() const override { return false; }
+        std::unique_ptr<engine::PackedRows> Pack(engine::StripView const&) override {
+            return std::make_unique<engine::PackedRows>();
+        }
+        void Write(engine::StripView const& strip, engine::PackedRows&) override {
+            for (int row = 0; row < strip.numRows; ++row) {
+                for (int x = 0; x < strip.width; ++x) {
+                    for (int plane = 0; plane < _numPlanes; ++plane)
+                        _sum += static_cast<double>(strip.GetRow(plane, row)[x]);
+                }
+            }
+        }
+        size_t Commit(engine::BakeOutput&) override { return 0; }
+
+    private:
+        int _numPlanes;
+        double& _sum;
+    };
+};
+
+TEST(BakeTo, GivesTheSameTexelsToADestinationOfTheCaller) {
+    auto const model = engine::Model::Build(test::LoadSpot());
+    auto options = MakeOptions();
+    options.maps = {"normal"};
+    engine::Job job;
+    SumOfTexels texels;
+    auto const report = engine::BakeTo(texels, model, options, job);
+    ASSERT_EQ(report.outputs.size(), 1u);
+    EXPECT_EQ(report.outputs[0].path, "sum");
+    double sum = 0.0;
+    for (float const value : engine::BakeToMemory(model, options, job).images.at(0).texels)
+        sum += static_cast<double>(value);
+    EXPECT_EQ(texels.sum, sum);
 }
 
 TEST(BakeToMemory, HasAnImagePerTile) {

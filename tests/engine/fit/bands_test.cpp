@@ -25,6 +25,12 @@ engine::Bands Split(engine::Scene const& scene, int count) {
     return engine::SplitIntoBands(engine::Model::Build(scene), count, {}, job);
 }
 
+TEST(MeasureExtent, WantsAPositionPerVertex) {
+    auto const model = engine::Model::Build(test::MakeCube());
+    EXPECT_EQ(test::RefusalOf([&] { engine::MeasureExtent(model, std::vector<double>(3)); }),
+              "positions: 3 values are too few for 8 vertices of 3");
+}
+
 TEST(Bands, AddUpToTheMesh) {
     for (engine::Scene const& scene : test::MakeNoisyScenes()) {
         for (int count : {1, 2, 7, 40}) {

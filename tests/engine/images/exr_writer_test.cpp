@@ -5,8 +5,10 @@
 
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfTiledInputFile.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "support/errors.h"
 #include "support/exr_level.h"
 #include "support/files.h"
 
@@ -111,6 +113,42 @@ TEST(ExrWriter, LeavesNothingWhenItIsAbandoned) {
         writer.Write(writer.Pack(0, 0, 0, &tile, 64));
         EXPECT_EQ(folder.List().size(), 1u);
     }
+    EXPECT_TRUE(folder.List().empty());
+}
+
+TEST(ExrWriter, RefusesTilesThatThereAreNotAndWantsAllThatThereAre) {
+    test::TemporaryFolder const folder;
+    ExrSpec spec;
+    spec.width = spec.height = 100;
+    spec.channels = {"Y"};
+    std::string const path = folder / "a.exr";
+    ExrWriter writer(path, spec);
+    struct Tile {
+        int level, x, y;
+    };
+    for (Tile const& tile : {Tile{3, 0, 0}, {-1, 0, 0}, {0, 2, 0}, {0, 0, 2}, {0, -1, 0}}) {
+        EXPECT_EQ(test::RefusalOf([&] { writer.PackEmpty(tile.level, tile.x, tile.y); }),
+                  fmt::format("'{}': there is no tile {} {} of level {}; level 0 has 2 x 2, and "
+                              "levels are 0 to 0",
+                              path, tile.x, tile.y, tile.level));
+    }
+    for (int tile = 0; tile < 3; ++tile) writer.Write(writer.PackEmpty(0, tile % 2, tile / 2));
+    EXPECT_EQ(
+        test::RefusalOf([&] { writer.Seal({}); }),
+        fmt::format("'{}' lacks 1 of its 4 tiles; all are written before it is sealed", path));
+    writer.Write(writer.PackEmpty(0, 1, 1));
+    writer.Seal({})->Commit();
+    EXPECT_TRUE(CheckSeal(path));
+}
+
+TEST(ExrWriter, RefusesImagesWithoutTexelsAndKindsOfOtherChannels) {
+    test::TemporaryFolder const folder;
+    auto const codeOf = [&](ExrSpec const& spec) {
+        return test::CodeOf([&] { ExrWriter(folder / "a.exr", spec); });
+    };
+    EXPECT_EQ(codeOf({.width = 0, .height = 64, .channels = {"Y"}}), ErrorCode::BadOption);
+    EXPECT_EQ(codeOf({.width = 64, .height = 64, .channels = {"X", "Y"}, .isHalf = {1}}),
+              ErrorCode::BadOption);
     EXPECT_TRUE(folder.List().empty());
 }
 

@@ -102,6 +102,22 @@ TEST_F(AtomicFiles, FoldersThatCannotBeMadeLeaveNone) {
     EXPECT_TRUE(folder.List().empty());
 }
 
+TEST_F(AtomicFiles, FoldersThatNobodyCanMakeAreRefusedAtOnce) {
+    fs::create_symlink("nowhere", folder / "dangling");
+    for (std::string const& path : {folder / "dangling/sub/a", std::string("/proc/limn/sub/a")}) {
+        EXPECT_EQ(test::RefusalOf([&] { AtomicFile{path}; }),
+                  fmt::format("'{}' cannot be written: No such file or directory", path));
+    }
+    EXPECT_EQ(folder.List(), Names{"dangling"});
+}
+
+TEST_F(AtomicFiles, NameIsNotCutAtAZeroByte) {
+    std::string const path = (folder / "a") + std::string(1, '\0') + ".exr";
+    EXPECT_EQ(test::RefusalOf([&] { AtomicFile{path}; }),
+              fmt::format("'{} .exr' cannot be written: a name holds no zero byte", folder / "a"));
+    EXPECT_TRUE(folder.List().empty());
+}
+
 TEST_F(AtomicFiles, FolderInItsPlaceIsRefusedAtOnce) {
     fs::create_directory(folder / "a");
     EXPECT_EQ(test::RefusalOf([&] { AtomicFile(folder / "a"); }),

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/io/mesh_reader.h"
+#include "support/errors.h"
 #include "support/files.h"
 #include "support/fit_meshes.h"
 #include "support/meshes.h"
@@ -128,12 +129,58 @@ TEST(MeshWriter, FloatOutputRoundsToTheNearestFloat) {
 
 TEST(MeshWriter, NumberBeyondFloatIsRefusedRatherThanWrittenAsInfinity) {
     Scene scene = test::MakeCube();
-    scene.positions[0] = 1e300;
+    scene.positions[4] = 1e300;
     for (std::string const name : {"a.obj", "a.ply"}) {
         test::TemporaryFolder const folder;
-        EXPECT_THROW(engine::WriteMesh(folder / name, scene, Precision::Float), Error) << name;
+        std::string const path = folder / name;
+        EXPECT_EQ(test::RefusalOf([&] { engine::WriteMesh(path, scene, Precision::Float); }),
+                  "'" + path +
+                      "': position of vertex 1 is 1e+300, and a float at most 3.40282e+38; use "
+                      "`precision` double");
         EXPECT_TRUE(folder.List().empty()) << name;
     }
+}
+
+TEST(MeshWriter, SceneWhosePartsDoNotBelongTogetherIsRefused) {
+    struct Case {
+        void (*damage)(Scene&);
+        std::string refusal;
+    };
+    std::vector<Case> const cases{
+        {[](Scene& s) { s.positions[7] = std::nan(""); },
+         "position of vertex 2 is nan; a finite number is needed"},
+        {[](Scene& s) { s.positions.resize(2); }, "positions: 2 values; 72 are needed"},
+        {[](Scene& s) { s.cage.faceVertices[2] = 1 << 20; },
+         "face 0 uses vertex 1048576; there are 24 vertices"},
+        {[](Scene& s) { s.cage.faceVertices.resize(3); }, "face 0: its corners are missing"},
+        {[](Scene& s) { s.cage.creaseVertexPairs = {0}; },
+         "creases: 1 vertices and 0 sharpnesses; each needs two and one"},
+        {[](Scene& s) { s.cage.fvarChannels[0].valueIndices[0] = 1 << 20; },
+         "face-varying channel 0: face 0 uses value 1048576; there are 35 values"},
+        {[](Scene& s) { s.cage.fvarChannels.clear(); },
+         "texture coordinates: 70 values; 0 are needed"},
+        {[](Scene& s) { s.lacksUVs = {1}; },
+         "faces without texture coordinates: 1 values; 24 are needed"},
+        {[](Scene& s) { s.primvars = {{"color", 3, {1}}}; },
+         "primvar 'color': 1 values; 72 are needed"},
+        {[](Scene& s) { s.normals = {1}; }, "normals: 1 values; 72 are needed"},
+        {[](Scene& s) { s.groups[0] = {{"a"}, std::vector<Index>(24, 5)}; },
+         "face 0 is in group 5; there are 1"}};
+    for (std::string const path : {"a.obj", "a.ply"}) {
+        for (Case const& damaged : cases) {
+            Scene scene = test::MakeTorus(6, 4);
+            damaged.damage(scene);
+            EXPECT_EQ(test::RefusalOf([&] { FormatMesh(path, scene, Precision::Double); }),
+                      "'" + path + "': " + damaged.refusal);
+        }
+    }
+}
+
+TEST(MeshWriter, PlyHasAPropertyPerChannelOfAWidePrimvar) {
+    Scene scene = test::MakeCube();
+    scene.primvars = {{"bone", 5, std::vector<float>(40, 0.25f)}};
+    std::string const bytes = FormatMesh("a.ply", scene, Precision::Float).bytes;
+    EXPECT_NE(bytes.find("property float bone_4\n"), std::string::npos);
 }
 
 TEST(MeshWriter, ObjKeepsTags) {

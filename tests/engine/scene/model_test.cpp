@@ -40,6 +40,13 @@ TEST(Model, HoldsWhatTheSceneSaid) {
     EXPECT_EQ(model.GetLevel().GetNumVertices(), scene.cage.numVertices);
 }
 
+TEST(Model, StaysWholeWhereItIsMovedFrom) {
+    Model model = Model::Build(MakeNamedTorus());
+    Model const moved = std::move(model);
+    EXPECT_EQ(&model.GetPositions(), &moved.GetPositions());
+    EXPECT_EQ(model.GetName(), "torus");
+}
+
 TEST(Model, MakesTheSceneItWasBuiltFrom) {
     Scene scene = MakeNamedTorus();
     scene.primvars = {{"mass", 1, std::vector<float>(scene.cage.numVertices, 2.0f)}};
@@ -187,7 +194,28 @@ INSTANTIATE_TEST_SUITE_P(
                 [](Scene& s) { s.groups[0] = {{"skin"}, std::vector<Index>(24, 1)}; },
                 "models/torus.obj: face 0 is in group 1; there are 1"},
         Refusal{"CreaseWithoutSharpness", [](Scene& s) { s.cage.creaseVertexPairs = {0, 1}; },
-                "models/torus.obj: creases and corners need one sharpness each"},
+                "models/torus.obj: creases: 2 vertices and 0 sharpnesses; each needs two and one"},
+        Refusal{"FarPosition", [](Scene& s) { s.positions[5] = -1e31; },
+                "models/torus.obj: position of vertex 1 is -1e+31; at most 1e+30 in magnitude is "
+                "possible"},
+        Refusal{"FarUV", [](Scene& s) { s.uvs[5] = 1e308; },
+                "models/torus.obj: texture coordinate 2 is 1e+308; at most 1e+30 in magnitude is "
+                "possible"},
+        Refusal{"PrimvarOfNoNumber",
+                [](Scene& s) {
+                    s.primvars = {{"mass", 2, std::vector<float>(48, 1.0f)}};
+                    s.primvars[0].values[7] = static_cast<float>(kNan);
+                },
+                "models/torus.obj: primvar 'mass' of vertex 3 is nan; at most 1e+30 in magnitude "
+                "is possible"},
+        Refusal{"ShortNormals", [](Scene& s) { s.normals = {0, 0, 1}; },
+                "models/torus.obj: normals: 3 values; 72 are needed"},
+        Refusal{"LinesOfOtherFaces", [](Scene& s) { s.faceLines = {1, 2}; },
+                "models/torus.obj: lines of faces: 2 values; 24 are needed"},
+        Refusal{"ManyVertices", [](Scene& s) { s.cage.numVertices = 2000000000; },
+                "models/torus.obj: positions: 72 values; 6000000000 are needed"},
+        Refusal{"Nameless", [](Scene& s) { s.path = s.name = "", s.positions.clear(); },
+                "mesh: positions: 0 values; 72 are needed"},
         Refusal{"NoVertices", [](Scene& s) { s.cage.numVertices = -1; },
                 "models/torus.obj: the mesh has no vertices"}),
     [](testing::TestParamInfo<Refusal> const& instance) { return instance.param.name; });
@@ -197,6 +225,10 @@ TEST(Model, RefusesPointsThatAreNoneOrTooFew) {
     EXPECT_EQ(test::RefusalOf([&] { model.WithPoints(std::vector<double>(9, 0.0)); }),
               "models/torus.obj: positions: 9 values; 72 are needed");
     auto positions = model.GetPositions();
+    positions.back() = 2e30;
+    EXPECT_EQ(test::RefusalOf([&] { model.WithPoints(positions); }),
+              "models/torus.obj: position of vertex 23 is 2e+30; at most 1e+30 in magnitude is "
+              "possible");
     positions.back() = kNan;
     EXPECT_EQ(test::RefusalOf([&] { model.WithPoints(positions); }),
               "models/torus.obj: position of vertex 23 is nan; a finite number is needed");

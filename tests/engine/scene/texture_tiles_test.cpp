@@ -51,6 +51,18 @@ TEST(TextureTiles, AFaceOverSeveralTilesLiesInAllOfThem) {
               (Numbers{1001, 1002, 1011, 1012, 1021, 1022}));
 }
 
+TEST(TextureTiles, WhereCoordinatesOverflowThereAreNoTiles) {
+    Model const model = MakeFace(MakeSquare(0, 0, 1, 1));
+    eval::LimitSurface const surface(model.GetRefiner(), 0);
+    for (double const far : {1e308, -1e308}) {
+        auto uvs = model.GetUVs();
+        uvs[4] = far;
+        TextureTiles tiles(surface, uvs, 2048, 2048);
+        tiles.Add(0);
+        EXPECT_EQ(tiles.IsLeftBy(0), false);
+    }
+}
+
 // The corner (2, 2) of the box is no part of the triangle.
 TEST(TextureTiles, OnlyWhatTheFaceReachesCounts) {
     for (auto scheme : {Sdc::SCHEME_LOOP, Sdc::SCHEME_CATMARK}) {

@@ -47,6 +47,42 @@ TEST(ControlMesh, TagsOutOfRangeOrNotANumberAreRefused) {
     }
 }
 
+TEST(ControlMesh, ArraysAndRulesThatDoNotBelongAreNamedWithValueAndBound) {
+    struct Case {
+        void (*damage)(ControlMesh&);
+        std::string refusal;
+    };
+    using Options = Sdc::Options;
+    std::vector<Case> const cases{
+        {[](ControlMesh& m) { m.scheme = static_cast<Sdc::SchemeType>(3); },
+         "scheme 3 is none of OpenSubdiv's, which are 0 to 2"},
+        {[](ControlMesh& m) {
+             m.options.SetVtxBoundaryInterpolation(
+                 static_cast<Options::VtxBoundaryInterpolation>(3));
+         },
+         "boundary interpolation 3 is none of OpenSubdiv's, which are 0 to 2"},
+        {[](ControlMesh& m) {
+             m.options.SetFVarLinearInterpolation(static_cast<Options::FVarLinearInterpolation>(6));
+         },
+         "face-varying interpolation 6 is none of OpenSubdiv's, which are 0 to 5"},
+        {[](ControlMesh& m) { m.creaseVertexPairs = {0, 1, 2}; },
+         "creases: 3 vertices and 0 sharpnesses; each needs two and one"},
+        {[](ControlMesh& m) { m.cornerSharpness = {1, 2}; },
+         "corners: 0 vertices and 2 sharpnesses; each needs one and one"},
+        {[](ControlMesh& m) { m.fvarChannels = {{4, {0, 1, 2, 3}}}; },
+         "face-varying channel 0: 4 indices; 24 are needed, one per corner"},
+        {[](ControlMesh& m) {
+             m.fvarChannels.assign(2, {24, std::vector<Index>(24, 7)});
+             m.fvarChannels[1].valueIndices[9] = 24;
+         },
+         "face-varying channel 1: face 2 uses value 24; there are 24 values"}};
+    for (Case const& damaged : cases) {
+        ControlMesh mesh = Cube();
+        damaged.damage(mesh);
+        EXPECT_EQ(test::RefusalOf([&] { far_ext::Validate(mesh); }), damaged.refusal);
+    }
+}
+
 TEST(ControlMesh, MoreCornersThanOpenSubdivHoldsAreRefused) {
     ControlMesh mesh;
     mesh.numVertices = 70000;
