@@ -108,7 +108,7 @@ std::optional<StreamTracer::Step> StreamTracer::ShortenToEdge(Start const& start
         double const width = outside.length - inside.length;
         double part = depth / (depth - beyond);
         if (!(part > 1e-6 && part < 1.0 - 1e-6)) part = 0.5;
-        auto const step = TryStep(start, inside.length + part * width);
+        auto step = TryStep(start, inside.length + part * width);
         if (!step) return {};
         double const found = findDepth(step->end);
         if (std::abs(found) <= kOnEdge) return step;
