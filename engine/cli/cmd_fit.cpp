@@ -102,6 +102,13 @@ std::string Explain(std::string const& path, engine::FitResult const& result, do
             path, component.firstVertex, component.numVertices, kSingular,
             ShowBeyond(component.defect, tolerance), tolerance);
     }
+    if (result.HasRunAway()) {
+        return fmt::format(
+            "{}: A has no inverse, as far as doubles tell: the control mesh runs away, {:.2g} "
+            "times as far as the vertices, and its limit misses them by {:.2g} of the diagonal; "
+            "use --alpha 0.5",
+            path, result.growth, result.certificate.max);
+    }
     for (size_t i = 0; i < result.primvars.size(); ++i) {
         if (result.report.converged && !result.primvars[i].converged) {
             return fmt::format(

@@ -8,6 +8,7 @@
 
 #include "engine/scene/same_faces.h"
 #include "far_ext/error.h"
+#include "far_ext/option_checks.h"
 
 namespace limn::engine {
 
@@ -44,11 +45,18 @@ std::vector<double> TakeBands(eval::LimitApplication const& A, eval::BandGains c
 
 }  // namespace
 
-BandSum SumBands(Model const& model, BandSumOptions const& options, Job& job) {
-    if (options.gains.first < 0) {
+void BandSumOptions::Check() const {
+    if (gains.first < 0) {
         throw Error(ErrorCode::BadOption,
-                    fmt::format("there is no band {}; they begin at 0", options.gains.first));
+                    fmt::format("there is no band {}; they begin at 0", gains.first));
     }
+    RequireAllFinite("gains", gains.gains);
+    if (gains.remainder) RequireFinite("gains", *gains.remainder, "of the remainder: ");
+    RequireKnown(kCarryWords, carry);
+}
+
+BandSum SumBands(Model const& model, BandSumOptions const& options, Job& job) {
+    options.Check();
     if (options.from) RequireSameFaces(model, *options.from, "a sum of bands");
     job.Start("building the limit matrix");
     auto const A =

@@ -18,6 +18,9 @@ struct BandSumOptions {
     Carry carry = Carry::Local;    ///< how those of another mesh come over
     far_ext::LimitOptions rule{};  ///< of the limit matrix, as SplitIntoBands
     eval::TableEvaluator* evaluator = nullptr;  ///< the same
+
+    /// \throws Error  BadOption
+    void Check() const;
 };
 
 /// A mesh as a sum of bands: its own, weighed, or itself with some bands of another.
@@ -39,7 +42,8 @@ struct BandSum {
 ///
 /// \param model   M; its tags make A
 /// \throws Error  BadMesh: other faces than those of the mesh that bands come from (the first
-///                difference is named).  BadOption: as SplitIntoBands, bands below 0
+///                difference is named).  BadOption: as SplitIntoBands, bands below 0,
+///                gains that are no numbers
 /// \throws Stopped
 /// Source  [LaiCheng11] (6); [Limit 7]
 BandSum SumBands(Model const& model, BandSumOptions const& options, Job& job);

@@ -11,6 +11,7 @@
 
 #include "eval/fit/decompose.h"
 #include "far_ext/error.h"
+#include "far_ext/option_checks.h"
 #include "far_ext/rows/points.h"
 
 namespace limn::engine {
@@ -40,6 +41,7 @@ MeshExtent MeasureExtent(Model const& model, std::span<double const> positions) 
 
 Bands SplitIntoBands(Model const& model, int count, far_ext::LimitOptions const& rule, Job& job,
                      eval::TableEvaluator* evaluator) {
+    RequireRange("count", count, 0, kMaxBands);
     job.Start("building the limit matrix");
     auto const A = eval::LimitApplication::Build(model.GetRefiner(), rule, evaluator);
     std::vector<std::vector<double>> bands;
@@ -59,6 +61,8 @@ Bands SplitIntoBands(Model const& model, int count, far_ext::LimitOptions const&
 }
 
 std::vector<double> Denoise(Model const& model, DenoiseOptions const& options, Job& job) {
+    RequireRange("detail", options.detail, 0, kMaxBands);
+    RequireAtLeast("steps", options.steps, 0);
     job.Start("building the limit matrix");
     auto const A =
         eval::LimitApplication::Build(model.GetRefiner(), options.rule, options.evaluator);
@@ -77,6 +81,8 @@ std::vector<double> Sharpen(Model const& model, SharpenOptions const& options, J
                     fmt::format("bands {} to {} are none; they begin at 1, and are given in order",
                                 options.first, options.last));
     }
+    RequireRange("last", options.last, 1, kMaxBands);
+    RequireAtLeast("steps", options.steps, 0);
     job.Start("building the limit matrix");
     auto const A =
         eval::LimitApplication::Build(model.GetRefiner(), options.rule, options.evaluator);

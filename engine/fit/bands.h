@@ -22,6 +22,10 @@ struct MeshExtent : Extent {
 /// \throws Error     BadOption: there are too few
 MeshExtent MeasureExtent(Model const& model, std::span<double const> positions);
 
+/// The last band that can be asked for: each takes an application of the limit matrix, and high
+/// ones hold next to nothing.
+inline constexpr int kMaxBands = 1000;
+
 /// Frequency bands of a mesh's positions, 3 numbers per vertex each; all add up to the positions.
 struct Bands {
     std::vector<std::vector<double>> bands;  ///< lowest frequencies first
@@ -30,7 +34,8 @@ struct Bands {
 
 /// \param rule       of the limit matrix: generalised Catmull-Clark has an alpha of 0 (plain) to 1
 /// \param evaluator  applies that matrix, in float; null: in double
-/// \throws Error  BadOption: alpha outside [0, 1] or with a scheme that has none
+/// \throws Error  BadOption: a count that is not from 0 to kMaxBands; alpha outside [0, 1] or with
+///                a scheme that has none
 /// \throws Stopped
 Bands SplitIntoBands(Model const& model, int count, far_ext::LimitOptions const& rule, Job& job,
                      eval::TableEvaluator* evaluator = nullptr);
@@ -42,6 +47,9 @@ struct DenoiseOptions {
     far_ext::LimitOptions rule{};  ///< as SplitIntoBands
     eval::TableEvaluator* evaluator = nullptr;
 };
+
+/// \throws Error  BadOption: detail or steps out of range; as SplitIntoBands
+/// \throws Stopped
 std::vector<double> Denoise(Model const& model, DenoiseOptions const& options, Job& job);
 
 /// The mesh's positions with some bands added again.

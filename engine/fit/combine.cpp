@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "engine/scene/same_faces.h"
+#include "far_ext/option_checks.h"
 #include "far_ext/rows/points.h"
 
 namespace limn::engine {
@@ -65,9 +68,29 @@ void MeasureOffset(Model const& model, Combination& result) {
     result.rmsOffset = std::sqrt(squares / count);
 }
 
+/// Finite summands may add up beyond the range of their numbers.
+template <class Number>
+void RefuseOverflow(Model const& model, std::string const& what, std::vector<Number> const& sum) {
+    auto const bad = std::ranges::find_if_not(sum, [](Number x) { return std::isfinite(x); });
+    if (bad == sum.end()) return;
+    throw Error(ErrorCode::TooLarge,
+                fmt::format("{}: {} of the combination are beyond the range "
+                            "of {}; weights nearer to 1 keep them within",
+                            model.GetPath(), what, sizeof(Number) == 4 ? "float" : "double"));
+}
+
 }  // namespace
 
+void CombineOptions::Check() const {
+    RequireFinite("scale", scale);
+    for (WeightedMesh const& mesh : added) RequireFinite("added", mesh.weight, "the weight ");
+    for (WeightedOffset const& offset : offsets)
+        RequireFinite("offsets", offset.weight, "the weight ");
+    RequireKnown(kCarryWords, carry);
+}
+
 Combination Combine(Model const& model, CombineOptions const& options, Job& job) {
+    options.Check();
     char const* const purpose = "a combination";
     for (WeightedMesh const& added : options.added) RequireSameFaces(model, added.mesh, purpose);
     for (WeightedOffset const& offset : options.offsets) {
@@ -84,12 +107,20 @@ Combination Combine(Model const& model, CombineOptions const& options, Job& job)
         for (Primvar& primvar : result.mesh.primvars) CombineScalar(options, primvar);
     }
     result.largestTurnDegrees = AddOffsets(model, options, sum, job);
+    RefuseOverflow(model, "coordinates", sum);
+    for (Primvar const& primvar : result.mesh.primvars)
+        RefuseOverflow(model, fmt::format("values of '{}'", primvar.name), primvar.values);
     MeasureOffset(model, result);
     return result;
 }
 
 std::vector<Primvar> MakeOffsetPrimvars(std::string const& name, Model const& model,
                                         std::vector<double> const& positions) {
+    if (positions.size() != model.GetPositions().size()) {
+        RefuseOption("positions",
+                     fmt::format("{} numbers; {} has {} vertices, of 3 each", positions.size(),
+                                 model.GetPath(), model.GetPositions().size() / 3));
+    }
     std::vector<Primvar> primvars;
     for (size_t axis = 0; axis < 3; ++axis) {
         Primvar primvar{name + "xyz" [axis], 1, {}};

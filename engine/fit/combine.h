@@ -26,6 +26,9 @@ struct CombineOptions {
     std::vector<WeightedMesh> added{};
     std::vector<WeightedOffset> offsets{};
     Carry carry = Carry::Local;  ///< of offsets, from where they start to the mesh
+
+    /// \throws Error  BadOption
+    void Check() const;
 };
 
 /// A sum of meshes of the same faces.
@@ -38,12 +41,15 @@ struct Combination {
 
 /// scale M + sum of weight O + sum of weight R (B - A), with R as Carry says.
 ///
-/// \throws Error  BadMesh: other faces than the mesh's (the first difference is named).
+/// \throws Error  BadMesh: other faces than the mesh's (the first difference is named).  BadOption:
+///                a weight that is no number.  TooLarge: a sum beyond the range of its numbers
 /// \throws Stopped
 /// Source  [Limit 7]
 Combination Combine(Model const& model, CombineOptions const& options, Job& job);
 
 /// The way from a mesh to other positions of its vertices as the scalars NAMEx, NAMEy and NAMEz.
+///
+/// \throws Error  BadOption: positions of another number of vertices
 std::vector<Primvar> MakeOffsetPrimvars(std::string const& name, Model const& model,
                                         std::vector<double> const& positions);
 

@@ -8,11 +8,14 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "engine/io/mesh_writer.h"
 #include "engine/scene/refine.h"
 #include "engine/scene/require_limit.h"
+#include "engine/scene/scene_checks.h"
 #include "eval/fit/alpha_steps.h"
 #include "eval/surface/vertex_limits.h"
 #include "far_ext/error.h"
+#include "far_ext/option_checks.h"
 #include "far_ext/rows/points.h"
 #include "far_ext/topology/refiner.h"
 
@@ -212,38 +215,61 @@ void FitPrimvars(eval::Interpolator const& interpolator, eval::InterpolateOption
         std::vector<double> const data(primvar.values.begin(), primvar.values.end());
         std::vector<double> fitted(data.size());
         job.Start("solving for " + primvar.name);
-        result.primvars.push_back(interpolator.Solve(data, primvar.numChannels, fitted, solve));
+        auto const report = NamingMesh(
+            fmt::format("{}: primvar '{}'", result.mesh.path, primvar.name),
+            [&] { return interpolator.Solve(data, primvar.numChannels, fitted, solve); });
+        result.primvars.push_back(report);
         std::transform(fitted.begin(), fitted.end(), primvar.values.begin(),
                        [](double x) { return static_cast<float>(x); });
     }
 }
 
+/// A mesh that grew shows an eigenvalue that the estimate missed where A is not symmetric: A takes
+/// it to data so much smaller.
+void MeasureGrowth(Model const& model, FitResult& result) {
+    result.growth = FindGrowth(FindExtent(model.GetPositions()), FindExtent(result.mesh.positions));
+    if (result.growth > kMostGrown)
+        result.lambdaMin = std::min(result.lambdaMin, 1.0 / result.growth);
+}
+
 /// Where A is nearly singular its inverse multiplies what alternates from vertex to vertex.
 void WarnOfGrowth(Model const& model, FitResult const& result, Job& job) {
-    double const growth =
-        FindGrowth(FindExtent(model.GetPositions()), FindExtent(result.mesh.positions));
-    if (!(growth > kMostGrown)) return;
+    if (!(result.growth > kMostGrown) || result.HasRunAway()) return;
     job.Warn(
         fmt::format("{}: the control mesh reaches {:.3g} times as far as the vertices that its "
                     "limit passes through, for the smallest eigenvalue of the limit matrix is "
                     "about {:.2g}; `alpha` 0.5 keeps it nearer",
-                    model.GetPath(), growth, result.lambdaMin));
+                    model.GetPath(), result.growth, result.lambdaMin));
 }
 
 }  // namespace
 
+void FitOptions::Check() const {
+    RequireKnown(eval::kSolveMethodWords, method);
+    RequireEnumerator("alphaRule", alphaRule, AlphaRule::Stationary);
+    RequireAboveZero("tolerance", tolerance);
+    RequireAtLeast("maxIterations", maxIterations, 1);
+    if (target) RequireMeshEnding(target->path);
+    if (evaluator && method == eval::SolveMethod::Direct) {
+        throw Error(ErrorCode::BadOption,
+                    "`evaluator` and `method` direct exclude each other: a factorisation applies "
+                    "no table");
+    }
+}
+
+bool FitResult::HasRunAway() const {
+    constexpr double kMost = 1e8;  // about 1 / sqrt(epsilon): half of double's digits are lost
+    return !(growth <= kMost);
+}
+
 bool FitResult::HasConverged() const {
-    return report.converged && certificate.isMet &&
+    return report.converged && certificate.isMet && !HasRunAway() &&
            std::all_of(primvars.begin(), primvars.end(),
                        [](auto const& primvar) { return primvar.converged; });
 }
 
 FitResult FitToLimit(Model const& model, FitOptions const& options, Job& job) {
-    if (options.evaluator && options.method == eval::SolveMethod::Direct) {
-        throw Error(ErrorCode::BadOption,
-                    "`evaluator` and `method` direct exclude each other: a factorisation applies "
-                    "no table");
-    }
+    options.Check();
     auto const start = std::chrono::steady_clock::now();
     if (options.alpha == 0.0) RequireLimit(model);  // else n-gons are subdivided first
     job.Start("building the limit matrix");
@@ -270,6 +296,7 @@ FitResult FitToLimit(Model const& model, FitOptions const& options, Job& job) {
     result.lambdaMin =
         result.report.singularComponents.empty() ? interpolator.EstimateSmallestEigenvalue() : 0.0;
     Finish(model, options, job, result);
+    MeasureGrowth(model, result);
     WarnOfGrowth(model, result, job);
     return result;
 }

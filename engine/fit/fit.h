@@ -28,6 +28,9 @@ struct FitOptions {
     std::optional<FarLimitRule> farLimit{};
     /// Applies A as a table in float; residuals stay in double. Null: none.
     eval::TableEvaluator* evaluator = nullptr;
+
+    /// \throws Error  BadOption
+    void Check() const;
 };
 
 /// How far the limit surface of the result, rounded as it is, passes from the vertices that were
@@ -50,21 +53,33 @@ struct FitResult {
     Certificate certificate;
     std::optional<FarReport> far{};  ///< with FitOptions::farLimit, at the vertices
     double lambdaMin = 0.0;  ///< smallest eigenvalue of A, estimated; 0 if a component is singular
+    double growth = 1.0;     ///< how many times as far as the data the mesh reaches, see FindGrowth
     double solveSeconds = 0.0;
 
-    /// The solver has, and the certificate is met.
+    /// The solver has, and the certificate is met, by a mesh that has not run away.
     bool HasConverged() const;
+
+    /// A has no inverse, as far as doubles tell, and the solver has added without end what A takes
+    /// to nothing. The mesh is no result then.
+    bool HasRunAway() const;
 };
 
 /// Finds the control mesh whose limit surface passes through the model's vertices, and fits its
-/// primvars the same way. Not converging is an answer; the mesh is then the best there is.
+/// primvars the same way. Not converging is an answer; the mesh is then the best there is, unless
+/// it has run away.
+///
+/// Singular  A has no inverse where all vertices of a closed component have valence 3 and
+///           alternate, like a cube's. Where all of them are smooth this is known beforehand, and
+///           they get the solution of minimum norm; where creases end in some of them [Limit 5]
+///           it shows in a mesh that runs away, if the data let it.
 ///
 /// Where nobody has asked for a precision, it is that with which the file keeps the tolerance.
 ///
 /// \param job     told of a precision that was not asked for, or loses too much, and of a control
 ///                mesh that is much larger than the model
 /// \throws Error        BadMesh: a coordinate that is no number.  BadOption: alpha outside [0, 1]
-///                      or with a scheme that has none; an evaluator for a factorisation
+///                      or with a scheme that has none; an evaluator for a factorisation; what
+///                      FitOptions::Check refuses
 /// \throws Stopped
 /// Source  [LaiCheng11] Sec. 4; [Limit 6]
 FitResult FitToLimit(Model const& model, FitOptions const& options, Job& job);

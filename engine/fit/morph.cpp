@@ -1,17 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/fit/morph.h"
 
+#include "engine/fit/bands.h"
 #include "engine/scene/same_faces.h"
 #include "eval/fit/decompose.h"
 #include "far_ext/error.h"
+#include "far_ext/option_checks.h"
 
 namespace limn::engine {
+
+void MorphOptions::Check() const {
+    for (MorphStep const& step : steps) {
+        RequireRange("rate", step.rate, 0.0, 1.0);
+        RequireRange("detail", step.detail, 0, kMaxBands);
+    }
+}
 
 Morph::Morph(Model const& from, Model const& to, MorphOptions const& options)
     : _to(to),
       _options(options),
       _operator(eval::LimitApplication::Build(to.GetRefiner(), options.rule, options.evaluator)),
       _positions(from.GetPositions()) {
+    options.Check();
     RequireSameFaces(from, to, "a morph");
     for (MorphStep const& step : options.steps) _keptAtEnd *= step.rate;
     if (options.endsExactly && !(_keptAtEnd < 1.0))

@@ -22,6 +22,9 @@ struct MorphOptions {
                                ///< of the difference is taken off little by little
     far_ext::LimitOptions rule{};               ///< of the limit matrix, as SplitIntoBands
     eval::TableEvaluator* evaluator = nullptr;  ///< the same; outlives the morph
+
+    /// \throws Error  BadOption
+    void Check() const;
 };
 
 /// The way from one mesh to another of the same faces, frame by frame; detail goes first.
@@ -35,7 +38,8 @@ public:
     /// \param to      its tags rule the filter; kept
     /// \throws Error  BadMesh where the meshes do not have the same faces (the first difference is
     ///                named).  BadOption: alpha outside [0, 1] or with a scheme that has none; an
-    ///                exact end of steps that keep the whole difference
+    ///                exact end of steps that keep the whole difference; a rate that is not from 0
+    ///                to 1, a detail that is no band
     Morph(Model const& from, Model const& to, MorphOptions const& options);
 
     /// Goes on to the next frame. \return its positions, until the next call

@@ -105,6 +105,17 @@ TEST_F(CliFit, OffTheRangeItIsStatus4AndNothingIsWritten) {
     EXPECT_EQ(engine::ReadMesh(folder / "kept.obj").cage.numVertices, 8);
 }
 
+TEST_F(CliFit, AMeshThatRunsAwayIsStatus4AndSaysWhy) {
+    std::string const mesh =
+        folder.Write("creased.obj", test::ReadText(cube) + "t crease 2/1/0 0 1 2\n");
+    std::string const error =
+        ExpectError(Limn({"fit", mesh, "-o", folder / "a.obj", "--report", folder / "r.json"}), 4,
+                    "A has no inverse, as far as doubles tell");
+    EXPECT_TRUE(Contains(error, "use --alpha 0.5")) << error;
+    EXPECT_LT(Report()["lambda_min"], 1e-8);
+    EXPECT_EQ(Limn({"fit", mesh, "-o", folder / "a.obj", "--alpha", "0.5"}).status, 0);
+}
+
 // A cube of edge 2, whose diagonal is 2 sqrt(3), with an alternating part of 1.001e-6 of that.
 TEST_F(CliFit, WhatIsJustBeyondTheToleranceIsToldApartFromIt) {
     std::string text;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/fit/bands.h"
 
+#include <functional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -29,6 +32,23 @@ TEST(MeasureExtent, WantsAPositionPerVertex) {
     auto const model = engine::Model::Build(test::MakeCube());
     EXPECT_EQ(test::RefusalOf([&] { engine::MeasureExtent(model, std::vector<double>(3)); }),
               "positions: 3 values are too few for 8 vertices of 3");
+}
+
+TEST(Bands, RefuseNumbersOutOfRange) {
+    engine::Job job;
+    auto const model = engine::Model::Build(test::MakeTorus(9, 7));
+    for (auto const& [run, message] : std::vector<std::pair<std::function<void()>, char const*>>{
+             {[&] { engine::SplitIntoBands(model, -5, {}, job); }, "`count`: -5"},
+             {[&] { engine::SplitIntoBands(model, 1001, {}, job); }, "from 0 to 1000"},
+             {[&] { engine::Denoise(model, {.detail = -1}, job); }, "`detail`: -1"},
+             {[&] { engine::Denoise(model, {.steps = -1}, job); }, "`steps`: -1"},
+             {[&] { engine::Sharpen(model, {.steps = -1}, job); }, "`steps`: -1"},
+             {[&] { engine::Sharpen(model, {.last = 1001}, job); }, "`last`: 1001"}}) {
+        auto const error = test::CatchError(run);
+        ASSERT_TRUE(error) << message;
+        EXPECT_EQ(error->GetCode(), ErrorCode::BadOption) << message;
+        EXPECT_NE(std::string(error->what()).find(message), std::string::npos) << error->what();
+    }
 }
 
 TEST(Bands, AddUpToTheMesh) {

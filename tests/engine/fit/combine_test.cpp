@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/fit/combine.h"
 
+#include <cmath>
+
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
@@ -54,6 +56,28 @@ TEST(Combine, OffsetsAddUpInTheOrderOfNothing) {
     Rows const one = Combine(mesh, {.offsets = {{from, to, 2.0}}}),
                other = Combine(mesh, {.offsets = {{from, mesh, -0.5}}});
     EXPECT_LT(test::LargestOf(both - (one + other - ToRows(mesh.GetPositions()))), 1e-13);
+}
+
+TEST(Combine, RefusesWeightsThatAreNoNumbersAndSumsBeyondThem) {
+    Model const mesh = MakeNoisyTorus(1);
+    for (double const bad : {std::nan(""), static_cast<double>(INFINITY)}) {
+        for (CombineOptions const& options :
+             {CombineOptions{.scale = bad}, CombineOptions{.added = {{mesh, bad}}},
+              CombineOptions{.offsets = {{mesh, mesh, bad}}}})
+            EXPECT_EQ(test::CodeOf([&] { Combine(mesh, options); }), ErrorCode::BadOption) << bad;
+    }
+    engine::Scene coloured = test::MakeTorus(9, 7);
+    coloured.primvars = {{"heat", 1, std::vector<float>(coloured.positions.size() / 3, 1e30f)}};
+    Model const hot = Model::Build(coloured);
+    std::string const why =
+        test::RefusalOf([&] { Combine(hot, {.scale = 1e20, .added = {{hot, 1.0}}}); });
+    EXPECT_NE(why.find("values of 'heat'"), std::string::npos) << why;
+}
+
+TEST(Combine, OffsetPrimvarsNeedAPositionPerVertex) {
+    Model const mesh = MakeNoisyTorus(1);
+    EXPECT_EQ(test::CodeOf([&] { engine::MakeOffsetPrimvars("d", mesh, {1.0, 2.0}); }),
+              ErrorCode::BadOption);
 }
 
 // A scalar is added where all have it; colours, and what one lacks, stay the first's.

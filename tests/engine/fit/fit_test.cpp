@@ -2,6 +2,7 @@
 #include "engine/fit/fit.h"
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -100,6 +101,43 @@ TEST(Fit, AControlMeshThatOutgrowsItsDataIsWarnedOf) {
     EXPECT_NE(grown[0].find("times as far as the vertices"), std::string::npos) << grown[0];
     EXPECT_NE(grown[0].find("`alpha` 0.5"), std::string::npos) << grown[0];
     EXPECT_TRUE(warnings(0.5).empty());
+}
+
+// Where creases end in vertices of valence 3 the alternating vector is still taken to nothing, but
+// A is not symmetric, which hides it from the estimate: the solution runs off along it.
+TEST(Fit, AControlMeshThatRunsAwayIsNoResult) {
+    engine::Scene cube = test::MakeCube();
+    auto const& face = cube.cage.faceVertices;
+    cube.cage.creaseVertexPairs = {face[0], face[1]};
+    for (float sharpness : {2.0f, 5.0f, 10.0f}) {
+        cube.cage.creaseSharpness = {sharpness};
+        auto const fit = FitToLimit(
+            cube, {.method = eval::SolveMethod::Direct, .tolerance = 1.0});  // any residual's
+        EXPECT_TRUE(fit.HasRunAway()) << sharpness;
+        EXPECT_FALSE(fit.HasConverged()) << sharpness;
+        EXPECT_LT(fit.lambdaMin, 1e-8) << sharpness;
+    }
+    EXPECT_TRUE(FitToLimit(cube, {.alpha = 0.5}).HasConverged());
+}
+
+TEST(Fit, RefusesOptionsOutOfRange) {
+    struct Case {
+        engine::FitOptions options;
+        char const* message;
+    };
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    for (auto const& [options, message] : std::vector<Case>{
+             {{.method = static_cast<eval::SolveMethod>(77)}, "`method`: '77' is not one of"},
+             {{.tolerance = kInfinity}, "`tolerance`: inf is no finite number above 0"},
+             {{.tolerance = std::nan("")}, "`tolerance`: nan is"},
+             {{.maxIterations = 0}, "`maxIterations`: 0 is not 1 or more"},
+             {{.alphaRule = static_cast<far_ext::LimitOptions::AlphaRule>(2)}, "`alphaRule`: 2 is"},
+             {{.target = {{"x.zzz"}}}, "x.zzz"}}) {
+        auto const error = test::CatchError([&] { FitToLimit(test::MakeTorus(9, 7), options); });
+        ASSERT_TRUE(error) << message;
+        EXPECT_EQ(error->GetCode(), ErrorCode::BadOption);
+        EXPECT_NE(std::string(error->what()).find(message), std::string::npos) << error->what();
+    }
 }
 
 // The whole miss belongs to the certificate: the solver's, and that of rounding to what the file

@@ -31,6 +31,14 @@ std::pair<Model, Model> MakeEnds() {
 
 // Q = M + (1,0,0): the constant difference is an eigenvector of D with eigenvalue 1; rho^k of it is
 // left.
+TEST(Morph, RefusesStepsOutOfRange) {
+    Model const mesh = Model::Build(test::MakeTorus(9, 7));
+    for (MorphStep const step : {MorphStep{.rate = std::nan("")}, MorphStep{.rate = -0.1},
+                                 MorphStep{.rate = 1.1}, MorphStep{.detail = -1}})
+        EXPECT_EQ(test::CodeOf([&] { Morph(mesh, mesh, {.steps = {step}}); }), ErrorCode::BadOption)
+            << step.rate << " " << step.detail;
+}
+
 TEST(Morph, KeepsRhoToTheKOfAConstantDifference) {
     engine::Scene const to = test::MakeTorus(9, 7);
     engine::Scene from = to;
