@@ -178,6 +178,7 @@ void MeasureGrowth(int numRounds) {
 }  // namespace limn::bench
 
 /// --rounds N
+// NOLINTNEXTLINE(bugprone-exception-escape): what is thrown ends a bench, as it should
 int main(int argc, char** argv) {
     using namespace limn::bench;
     int const numRounds = std::min(GetNumRounds(argc, argv), 3);

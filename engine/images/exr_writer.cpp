@@ -318,7 +318,7 @@ void CheckSpec(std::string const& path, ExrSpec const& spec) {
     }
     if (spec.isHalf.empty() || spec.isHalf.size() == spec.channels.size()) return;
     throw Error(ErrorCode::BadOption,
-                fmt::format("'{}': `isHalf` has {} values; {} are needed, one per channel", path,
+                fmt::format("'{}': isHalf has {} values; {} are needed, one per channel", path,
                             spec.isHalf.size(), spec.channels.size()));
 }
 

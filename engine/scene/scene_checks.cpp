@@ -31,8 +31,9 @@ void CheckFinite(std::string const& what, std::vector<double> const& values, siz
 /// \param length  values per element
 template <class T>
 void CheckMagnitude(std::string const& what, std::span<T const> values, size_t length) {
-    auto const bad = std::find_if_not(values.begin(), values.end(),
-                                      [](T v) { return std::abs(v) <= kLargestNumber; });
+    auto const bad = std::find_if_not(values.begin(), values.end(), [](T v) {
+        return std::abs(v) <= static_cast<T>(kLargestNumber);
+    });
     if (bad == values.end()) return;
     throw Error(
         ErrorCode::BadMesh,

@@ -119,9 +119,9 @@ TEST(BakeTo, GivesTheSameTexelsToADestinationOfTheCaller) {
     auto const report = engine::BakeTo(texels, model, options, job);
     ASSERT_EQ(report.outputs.size(), 1u);
     EXPECT_EQ(report.outputs[0].path, "sum");
+    auto const baked = engine::BakeToMemory(model, options, job);
     double sum = 0.0;
-    for (float const value : engine::BakeToMemory(model, options, job).images.at(0).texels)
-        sum += static_cast<double>(value);
+    for (float const value : baked.images.at(0).texels) sum += static_cast<double>(value);
     EXPECT_EQ(texels.sum, sum);
 }
 

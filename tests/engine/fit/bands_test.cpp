@@ -44,7 +44,7 @@ TEST(Bands, RefuseNumbersOutOfRange) {
              {[&] { engine::Denoise(model, {.steps = -1}, job); }, "`steps`: -1"},
              {[&] { engine::Sharpen(model, {.steps = -1}, job); }, "`steps`: -1"},
              {[&] { engine::Sharpen(model, {.last = 1001}, job); }, "`last`: 1001"}}) {
-        auto const error = test::CatchError(run);
+        auto const error = test::CatchError(std::cref(run));
         ASSERT_TRUE(error) << message;
         EXPECT_EQ(error->GetCode(), ErrorCode::BadOption) << message;
         EXPECT_NE(std::string(error->what()).find(message), std::string::npos) << error->what();
