@@ -56,7 +56,7 @@ void AddOffset(far_ext::LimitRow const& row, Index vertex, std::span<double cons
 VertexLimits FindVertexLimits(Far::TopologyRefiner const& refiner, int level,
                               std::span<double const> values, int length,
                               std::function<void()> const& onBlock) {
-    VertexLevel const topology = refiner.GetLevel(level);
+    VertexLevel const& topology = refiner.GetLevel(level);
     Index const count = topology.GetNumVertices();
     far_ext::CheckLength("control points", values, count, "vertices", length);
     VertexLimits limits{{values.begin(), values.end()},

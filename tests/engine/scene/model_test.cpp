@@ -42,9 +42,11 @@ TEST(Model, HoldsWhatTheSceneSaid) {
 
 TEST(Model, StaysWholeWhereItIsMovedFrom) {
     Model model = Model::Build(MakeNamedTorus());
+    // NOLINTBEGIN(performance-move-const-arg,bugprone-use-after-move): what is left is looked at
     Model const moved = std::move(model);
     EXPECT_EQ(&model.GetPositions(), &moved.GetPositions());
     EXPECT_EQ(model.GetName(), "torus");
+    // NOLINTEND(performance-move-const-arg,bugprone-use-after-move)
 }
 
 TEST(Model, MakesTheSceneItWasBuiltFrom) {
