@@ -98,7 +98,8 @@ Command::Command(std::vector<std::string> arguments, engine::MeshSource& meshes,
 
 int Command::Run() {
     RunEnd const end = Attempt([&] { return ParseAndRun(); }, _getStopStatus);
-    if (!end.error.empty()) Say(fmt::format("limn: error: {}\n", end.error));
+    if (!end.error.empty() && !_isTold.test_and_set())
+        Say(fmt::format("limn: error: {}\n", end.error));
     return end.status;
 }
 
@@ -156,7 +157,8 @@ void Command::GiveUp(int status) {
             return end;
         },
         _getStopStatus);
-    SayWithoutWaiting(fmt::format("limn: error: {}\n", end.error));
+    if (!_isTold.test_and_set())  // the run may have ended just now
+        SayWithoutWaiting(fmt::format("limn: error: {}\n", end.error));
 }
 
 }  // namespace limn::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -48,6 +49,7 @@ private:
     std::function<int()> const _getStopStatus;
     std::mutex _contextMutex;
     Context* _context = nullptr;  ///< while the verb runs
+    std::atomic_flag _isTold;     ///< that the run ended in an error
 };
 
 /// Runs one command and returns its exit status.
