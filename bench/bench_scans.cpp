@@ -82,7 +82,7 @@ void MeasureBake(int numRounds, test::TemporaryFolder const& folder) {
         fmt::print("\n{} is not there: no bakes\n", kHead);
         return;
     }
-    std::string const scan = WriteScan(folder, 159), out = folder / "map.exr";
+    std::string const scan = WriteScan(folder, 159), out = folder / "map.<UDIM>.exr";
     Words const options{"-o", out, "--maps", "mean", "--size", "1024"};
     auto const bake = [&](std::string const& mesh, Words const& more) {
         Words words{"bake", mesh};
